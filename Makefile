@@ -1,0 +1,76 @@
+# Front door of the workspace. Everything below works from a clean clone with nothing sourced.
+
+SCENARIO ?= emergency
+MODEL    ?= 2d
+OUT      ?= results/$(SCENARIO)
+JOBS     ?= $(shell nproc)
+
+SHELL       := /bin/bash
+.SHELLFLAGS := -o pipefail -c
+
+# catkin_make with the system's Python, whatever else is on PATH, and free of the flags of this make.
+catkin_make = env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES catkin_make --no-color -j$(JOBS) \
+  -DPYTHON_EXECUTABLE=/usr/bin/python3
+release  = $(catkin_make) -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_sanitize \
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=address,undefined
+
+# What of a build's output is worth reading: the steps and the complaints.
+quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Install space|Creating symlink|\#\#\#\#|-- |Consolidate compiler)|.*\] Built target )/d'
+
+# All tests of the build folder $(1), the output of failed ones, and "N passed, N failed".
+run_tests = rm -rf $(1)/test_results $(1)/Testing; \
+  (cd $(1) && ctest -j$(JOBS) --timeout 600 --output-on-failure); \
+  tools/test_summary.py $(1)
+
+sources = find src -name '*.h' -o -name '*.cpp'
+
+.PHONY: help
+help: ## this list
+	@echo "Freight train braking simulator. Targets:"
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' Makefile | expand -t 24
+	@echo "Variables of make run: SCENARIO=$(SCENARIO) MODEL=$(MODEL) OUT=$(OUT)"
+
+.PHONY: deps
+deps: ## install the missing Debian packages (tools/packages.txt)
+	@tools/install_packages.sh
+
+.PHONY: build
+build: deps ## build everything (Release) into build/ and devel/
+	@$(release) $(quietly)
+
+.PHONY: run
+run: build ## run config/scenarios/$(SCENARIO).yaml into $(OUT)
+	@devel/lib/ltd_master/train_sim run config/scenarios/$(SCENARIO).yaml --model $(MODEL) --out $(OUT)
+
+.PHONY: test
+test: check-deps build ## build and run all tests
+	@$(release) tests $(quietly)
+	@$(call run_tests,build)
+
+.PHONY: test-sanitize
+test-sanitize: deps ## the same with the address and undefined-behaviour sanitizers, in build_sanitize/
+	@$(sanitize) $(quietly)
+	@$(sanitize) tests $(quietly)
+	@$(call run_tests,build_sanitize)
+
+.PHONY: check-deps
+check-deps: ## check who includes whom
+	@tools/check_dependencies.sh
+
+.PHONY: format
+format: ## format the C++ code in place (clang-format 14)
+	@$(sources) | xargs clang-format -i
+
+.PHONY: check-format
+check-format: ## complain about C++ code that is not formatted
+	@$(sources) | xargs clang-format --dry-run --Werror
+
+.PHONY: tidy
+tidy: build ## static analysis (clang-tidy 14)
+	@$(release) tests $(quietly)
+	@run-clang-tidy -quiet -p build '^$(CURDIR)/src/' 2>&1 | sed -uE '/clang-tidy-|warnings? generated\.$$|^Suppressed |^Use -header-filter/d'
+
+.PHONY: clean
+clean: ## remove everything built; results stay
+	@rm -rf build devel install build_sanitize devel_sanitize src/CMakeLists.txt .catkin_workspace
