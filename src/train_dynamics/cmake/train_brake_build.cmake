@@ -1,0 +1,54 @@
+# How every C++ target of the workspace is compiled. train_dynamics exports this file (CFG_EXTRAS), so
+# each package that finds train_dynamics has these functions:
+#
+#   train_brake_configure_target(target)              C++17, warnings, reproducible arithmetic, sanitizers
+#   train_brake_add_gtests(file... LIBRARIES lib...)  one GoogleTest executable per file
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  # CMake's Release is -O3 -DNDEBUG.
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type: Release, RelWithDebInfo or Debug" FORCE)
+endif()
+
+option(TRAIN_BRAKE_WARNINGS_AS_ERRORS "Stop at compiler warnings" ON)
+set(TRAIN_BRAKE_SANITIZE "" CACHE STRING "Sanitizers: empty, \"address,undefined\" or \"thread\"")
+
+function(train_brake_configure_target target)
+  set_target_properties(${target} PROPERTIES
+    CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    # The same bits on every target: no multiply-add where the source does not ask for one.
+    -ffp-contract=off
+    # errno is never read, so sqrt is one instruction.
+    -fno-math-errno
+    # Functions of a shared library may be inlined into each other.
+    -fno-semantic-interposition)
+  if(TRAIN_BRAKE_SANITIZE)
+    # Warnings stay warnings here: instrumented code confuses the compiler's flow analysis.
+    set(sanitize -fsanitize=${TRAIN_BRAKE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE ${sanitize})
+    target_link_libraries(${target} ${sanitize})
+  elseif(TRAIN_BRAKE_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# A test named foo_test.cpp becomes the target <package>_foo_test (target names are unique in a workspace).
+# Tests find the top-level config folder as TRAIN_BRAKE_CONFIG_DIR.
+function(train_brake_add_gtests)
+  cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
+  get_filename_component(config_dir ${PROJECT_SOURCE_DIR}/../../config ABSOLUTE)
+  if(TARGET GTest::gtest_main)
+    set(gtest_main GTest::gtest_main)
+  else()
+    set(gtest_main ${GTEST_MAIN_LIBRARIES})
+  endif()
+  foreach(source ${arg_UNPARSED_ARGUMENTS})
+    get_filename_component(stem ${source} NAME_WE)
+    set(target ${PROJECT_NAME}_${stem})
+    catkin_add_gtest(${target} ${source})
+    target_link_libraries(${target} ${arg_LIBRARIES} ${gtest_main})
+    target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_CONFIG_DIR="${config_dir}")
+    train_brake_configure_target(${target})
+  endforeach()
+endfunction()
