@@ -1,0 +1,169 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+/// Measured behaviour of service applications over the reduction of the brake pipe's pressure (paper Figure
+/// 1).
+///
+/// All lists have the same length; between the measured reductions each quantity follows a monotone cubic.
+struct ServiceApplicationParams {
+  std::vector<double> reduction_kpa;          ///< of the brake pipe, ascending
+  std::vector<double> cylinder_pressure_kpa;  ///< p_s, steady
+  std::vector<double> wave_speed_mps;
+  std::vector<double> rise_rate_per_s;  ///< beta
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Numbers("reduction_kpa", reduction_kpa, kPositive);
+    v.Numbers("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative);
+    v.Numbers("wave_speed_mps", wave_speed_mps, kPositive);
+    v.Numbers("rise_rate_per_s", rise_rate_per_s, kPositive);
+    v.Check(reduction_kpa.size() >= 4, "reduction_kpa", "must list at least 4 reductions");
+    v.Check(Ascending(reduction_kpa), "reduction_kpa", "must ascend");
+    v.Check(cylinder_pressure_kpa.size() == reduction_kpa.size(), "cylinder_pressure_kpa", kSameLength);
+    v.Check(wave_speed_mps.size() == reduction_kpa.size(), "wave_speed_mps", kSameLength);
+    v.Check(rise_rate_per_s.size() == reduction_kpa.size(), "rise_rate_per_s", kSameLength);
+  }
+
+ private:
+  static constexpr const char* kSameLength = "must have as many values as reduction_kpa";
+  static bool Ascending(const std::vector<double>& values);
+};
+
+/// An emergency application. Its pressure rises the slower the further a vehicle is from the source that
+/// vents there:
+///
+///   beta(d) = rise_rate_per_s - rise_rate_fall_per_s * d / rise_rate_fall_length_m
+struct EmergencyApplicationParams {
+  double cylinder_pressure_kpa = kRequired;
+  double wave_speed_mps = kRequired;
+  double rise_rate_per_s = kRequired;
+  double rise_rate_fall_per_s = 0.0;
+  double rise_rate_fall_length_m = 1.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative);
+    v.Number("wave_speed_mps", wave_speed_mps, kPositive);
+    v.Number("rise_rate_per_s", rise_rate_per_s, kPositive);
+    v.Number("rise_rate_fall_per_s", rise_rate_fall_per_s, kNonNegative);
+    v.Number("rise_rate_fall_length_m", rise_rate_fall_length_m, kPositive);
+  }
+};
+
+struct ReleaseParams {
+  double wave_speed_mps = kRequired;
+  double fall_rate_per_s = kRequired;  ///< beta_r
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("wave_speed_mps", wave_speed_mps, kPositive);
+    v.Number("fall_rate_per_s", fall_rate_per_s, kPositive);
+  }
+};
+
+/// A place where the brake pipe is vented (and charged, if it releases): a locomotive or an End-of-Train
+/// device.
+struct BrakeSourceParams {
+  std::string name;
+  int vehicle = 0;                   ///< 1 = the first; -1 = the last, whatever the train's length
+  double application_delay_s = 0.0;  ///< from the driver's command to the venting of the pipe here
+  bool releases = true;              ///< false: an End-of-Train device, which only vents
+  double release_delay_s = 0.0;      ///< from the driver's command to the charging of the pipe here
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false});
+    v.Number("application_delay_s", application_delay_s, kNonNegative);
+    v.Flag("releases", releases);
+    if (releases) v.Number("release_delay_s", release_delay_s, kNonNegative);
+    v.Check(vehicle != 0, "vehicle", "must count from 1, or from -1 for the last");
+  }
+};
+
+/// A conventional automatic air brake, as an empirical model over measured data.
+struct AirBrakeParams {
+  std::string name;
+  std::vector<BrakeSourceParams> sources;
+  ServiceApplicationParams service;
+  EmergencyApplicationParams emergency;
+  ReleaseParams release;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.List("sources", sources);
+    v.Group("service", service);
+    v.Group("emergency", emergency);
+    v.Group("release", release);
+    v.Check(!sources.empty(), "sources", "must list at least one source");
+  }
+};
+
+enum class BrakeCommandKind { kApply, kEmergency, kRelease };
+
+/// What the driver does with the brake, and when.
+struct BrakeCommand {
+  double time_s = kRequired;
+  BrakeCommandKind kind = BrakeCommandKind::kApply;
+  double reduction_kpa = kRequired;  ///< of the pipe in total, for kApply only
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("time_s", time_s, kNonNegative);
+    v.Choice("kind", kind,
+             {{"apply", BrakeCommandKind::kApply},
+              {"emergency", BrakeCommandKind::kEmergency},
+              {"release", BrakeCommandKind::kRelease}});
+    if (kind == BrakeCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
+  }
+};
+
+/// Cylinder pressures of a train under a list of driver commands (paper Eq 2).
+///
+/// A command reaches vehicle i when the first wave does:
+///
+///   t_d,i = t_command + min over sources (delay of the source + distance / wave speed)
+///
+/// From then on, with p_m the pressure at that moment,
+///
+///   application: p = p_m + (p_s - p_m)(1 - exp(-beta (t - t_d,i))),  limited to [p_m, p_s]
+///   release:     p = p_m exp(-beta_r (t - t_d,i))
+///
+/// A later command overtakes an earlier one where its wave is faster: a vehicle obeys the newest command that
+/// has reached it. Distances are between vehicle centres on the unstretched train. Stateless: any time may be
+/// asked for.
+class AirBrake {
+ public:
+  /// @param vehicle_positions_m  centre of each vehicle on the unstretched train, any origin, front to rear
+  /// @throws std::invalid_argument if a source stands outside the train, a reduction lies outside the
+  /// measured
+  ///         range, times do not ascend, or an emergency rise rate falls to zero within the train.
+  AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
+           const std::vector<double>& vehicle_positions_m);
+
+  int vehicles() const { return static_cast<int>(phases_.size()); }
+
+  /// Cylinder pressure of each vehicle [Pa] at time t [s]; resizes `pressure_pa`.
+  void PressuresAt(double time_s, std::vector<double>& pressure_pa) const;
+
+  /// Time at which the last command reaches the vehicle [s]; infinity without commands. vehicle counts from
+  /// 0.
+  double ArrivalTime(int vehicle) const;
+
+ private:
+  /// The pressure from `begin_s` on tends from `begin_pa` to `target_pa`.
+  struct Phase {
+    double begin_s, begin_pa, target_pa, rate_per_s;
+    double PressureAt(double time_s) const;
+  };
+  std::vector<std::vector<Phase>> phases_;  ///< [vehicle][0 = released until the first command, ...]
+};
+
+}  // namespace train_dynamics

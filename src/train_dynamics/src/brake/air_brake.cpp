@@ -1,0 +1,113 @@
+#include "train_dynamics/brake/air_brake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "train_dynamics/numeric/elementary.h"
+#include "train_dynamics/numeric/monotone_cubic.h"
+
+namespace train_dynamics {
+namespace {
+
+constexpr double kPaPerKpa = 1000.0;
+
+/// How a command acts on the pipe and the cylinders, before distances are known.
+struct CommandEffect {
+  double wave_speed_mps, target_pa, rate_per_s, rate_fall_per_s_m;
+  bool is_release;
+};
+
+CommandEffect EffectOf(const BrakeCommand& command, const AirBrakeParams& params) {
+  if (command.kind == BrakeCommandKind::kRelease) {
+    return {params.release.wave_speed_mps, 0.0, params.release.fall_rate_per_s, 0.0, true};
+  }
+  if (command.kind == BrakeCommandKind::kEmergency) {
+    const EmergencyApplicationParams& e = params.emergency;
+    return {e.wave_speed_mps, kPaPerKpa * e.cylinder_pressure_kpa, e.rise_rate_per_s,
+            e.rise_rate_fall_per_s / e.rise_rate_fall_length_m, false};
+  }
+  const ServiceApplicationParams& s = params.service;
+  const double reduction = command.reduction_kpa;
+  if (reduction < s.reduction_kpa.front() || reduction > s.reduction_kpa.back()) {
+    throw std::invalid_argument("reduction_kpa must be in [" + std::to_string(s.reduction_kpa.front()) +
+                                ", " + std::to_string(s.reduction_kpa.back()) +
+                                "], the measured range, got " + std::to_string(reduction));
+  }
+  return {MonotoneCubic(s.reduction_kpa, s.wave_speed_mps, reduction),
+          kPaPerKpa * MonotoneCubic(s.reduction_kpa, s.cylinder_pressure_kpa, reduction),
+          MonotoneCubic(s.reduction_kpa, s.rise_rate_per_s, reduction), 0.0, false};
+}
+
+/// Index from 0 of a source's vehicle.
+int SourceIndex(const BrakeSourceParams& source, int vehicles) {
+  const int index = source.vehicle > 0 ? source.vehicle - 1 : vehicles + source.vehicle;
+  if (index < 0 || index >= vehicles) {
+    throw std::invalid_argument("brake source " + source.name + " stands at vehicle " +
+                                std::to_string(source.vehicle) + ", but the train has " +
+                                std::to_string(vehicles));
+  }
+  return index;
+}
+
+}  // namespace
+
+bool ServiceApplicationParams::Ascending(const std::vector<double>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+}
+
+double AirBrake::Phase::PressureAt(double time_s) const {
+  return target_pa + (begin_pa - target_pa) * Exp(-rate_per_s * (time_s - begin_s));
+}
+
+AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
+                   const std::vector<double>& vehicle_positions_m) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const int n = static_cast<int>(vehicle_positions_m.size());
+  phases_.assign(n, {Phase{0.0, 0.0, 0.0, 0.0}});
+  double last_time = 0.0;
+  for (const BrakeCommand& command : commands) {
+    if (command.time_s < last_time) throw std::invalid_argument("the times of brake commands must ascend");
+    last_time = command.time_s;
+    const CommandEffect effect = EffectOf(command, params);
+    for (int i = 0; i < n; ++i) {
+      double arrival = kInfinity, distance = 0.0;
+      for (const BrakeSourceParams& source : params.sources) {
+        const int at = SourceIndex(source, n);
+        if (effect.is_release && !source.releases) continue;
+        const double d = std::abs(vehicle_positions_m[i] - vehicle_positions_m[at]);
+        const double delay = effect.is_release ? source.release_delay_s : source.application_delay_s;
+        const double t = command.time_s + delay + d / effect.wave_speed_mps;
+        if (t < arrival) arrival = t, distance = d;
+      }
+      if (arrival == kInfinity) throw std::invalid_argument("no brake source releases the brakes");
+      const double rate = effect.rate_per_s - effect.rate_fall_per_s_m * distance;
+      if (!(rate > 0.0)) {
+        throw std::invalid_argument("the emergency rise rate falls to zero " + std::to_string(distance) +
+                                    " m from its source; rise_rate_fall_per_s is too large for this train");
+      }
+      std::vector<Phase>& phases = phases_[i];
+      while (phases.size() > 1 && phases.back().begin_s >= arrival) phases.pop_back();  // overtaken
+      const double begin_pa = phases.back().PressureAt(arrival);
+      const double target_pa = effect.is_release ? 0.0 : std::max(effect.target_pa, begin_pa);
+      phases.push_back({arrival, begin_pa, target_pa, rate});
+    }
+  }
+}
+
+void AirBrake::PressuresAt(double time_s, std::vector<double>& pressure_pa) const {
+  pressure_pa.resize(phases_.size());
+  for (size_t i = 0; i < phases_.size(); ++i) {
+    size_t k = phases_[i].size() - 1;
+    while (k > 0 && phases_[i][k].begin_s > time_s) --k;
+    pressure_pa[i] = phases_[i][k].PressureAt(time_s);
+  }
+}
+
+double AirBrake::ArrivalTime(int vehicle) const {
+  const std::vector<Phase>& phases = phases_.at(vehicle);
+  return phases.size() > 1 ? phases.back().begin_s : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace train_dynamics
