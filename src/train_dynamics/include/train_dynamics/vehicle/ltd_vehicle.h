@@ -1,0 +1,99 @@
+#pragma once
+
+#include "train_dynamics/numeric/scalar.h"
+#include "train_dynamics/track/track.h"
+#include "train_dynamics/vehicle/vehicle_params.h"
+#include "train_dynamics/vehicle/work.h"
+
+namespace train_dynamics {
+
+/// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2.
+///
+/// Enters the inertia only, never weight, resistance or the force of the grade.
+inline double EquivalentRotationalMass(const WheelsetParams& wheelset, int wheelsets) {
+  return wheelsets * wheelset.pitch_inertia_kgm2 / (wheelset.wheel_radius_m * wheelset.wheel_radius_m);
+}
+
+/// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
+struct LtdVehicle {
+  LtdVehicle(const VehicleParams& params, bool with_rotational_inertia);
+
+  BrakeRiggingParams brake_rigging;
+  PropulsionResistanceParams propulsion_resistance;
+  double weight_n;    ///< m g
+  double inertia_kg;  ///< m, or m + m_e
+};
+
+template <class T>
+struct LtdState {
+  T origin_m{};  ///< position along the track at the start; constant
+  T x_m{};       ///< displacement since the start
+  T v_mps{};
+  VehicleWork<T> work;
+};
+
+/// How the one degree of freedom is stepped.
+///
+/// Both use the forces of paper Eq 1 once per step and are symplectic; they sample the same trajectory half a
+/// step apart.
+enum class LtdIntegrator {
+  kLeapfrog,  ///< half drift, kick, half drift: forces at the middle of the step
+  kNewmark,  ///< the paper's explicit Newmark method, beta = 0, gamma = 1/2: forces at the start of the step;
+             ///< `v_mps` is its predicted velocity, i.e. that of half a step earlier
+};
+
+/// One time step of paper Eq 1.
+///
+///   v*      = v + dt (F_front - F_rear + F_t - W grade(x)) / M
+///   v_(n+1) = sgn(v*) max(|v*| - dt (F_ab + F_db + R + F_cr) / M, 0)
+///
+/// Brakes and resistance are set-valued at rest: the projection holds a standing vehicle exactly, on any
+/// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
+template <class T>
+void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
+             const VehicleLoads<T>& loads, double dt, LtdState<T>& s);
+
+/// Kinetic energy [J]; the only store of energy in an LTD vehicle.
+template <class T>
+T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
+  return 0.5 * vehicle.inertia_kg * s.v_mps * s.v_mps;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <class T>
+void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
+             const VehicleLoads<T>& loads, double dt, LtdState<T>& s) {
+  const T v0 = s.v_mps;
+  const double drift = integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
+  s.x_m = s.x_m + drift * v0;
+
+  const T gravity = -vehicle.weight_n * GradeUnder(track, s.origin_m + s.x_m);
+  const T shoes = ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
+  const T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
+  const T drag = AirDrag(vehicle.propulsion_resistance, vehicle.weight_n, v0);
+  const T retarding = shoes + loads.dynamic_brake_n + rolling + loads.curving_resistance_n + drag;
+
+  const double per_inertia = dt / vehicle.inertia_kg;
+  const T free =
+      v0 + per_inertia * (loads.front_coupler_n - loads.rear_coupler_n + loads.traction_n + gravity);
+  const T v1 = CopySign(Max(T(0.0), Abs(free) - per_inertia * retarding), free);
+  s.v_mps = v1;
+  s.x_m = s.x_m + (dt - drift) * v1;
+
+  const T path = 0.5 * dt * (v0 + v1);  // force x path = exact change of kinetic energy
+  const T mobilised = (free - v1) / Max(T(1e-300), per_inertia * retarding);  // -1 ... 1
+  VehicleWork<T>& work = s.work;
+  work.gravity = work.gravity + gravity * path;
+  work.traction = work.traction + loads.traction_n * path;
+  const auto book = [&](Dissipation element, const T& force) {
+    work.dissipated[element] = work.dissipated[element] + force * mobilised * path;
+  };
+  book(kBrakeShoes, shoes);
+  book(kDynamicBrake, loads.dynamic_brake_n);
+  book(kRollingResistance, rolling);
+  book(kCurvingResistance, loads.curving_resistance_n);
+  book(kAirDrag, drag);
+}
+
+}  // namespace train_dynamics

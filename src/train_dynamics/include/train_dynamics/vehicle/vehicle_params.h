@@ -1,0 +1,120 @@
+#pragma once
+
+#include <string>
+
+#include "train_dynamics/brake/shoe_friction.h"
+#include "train_dynamics/contact/hertz.h"
+#include "train_dynamics/contact/normal_contact.h"
+#include "train_dynamics/contact/polach.h"
+#include "train_dynamics/resistance/propulsion.h"
+#include "train_dynamics/suspension/centre_plate.h"
+#include "train_dynamics/suspension/friction_wedge.h"
+#include "train_dynamics/suspension/linear_spring_damper.h"
+#include "train_dynamics/suspension/spring_nest.h"
+
+namespace train_dynamics {
+
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
+/// A rigid body in the longitudinal-vertical plane.
+struct BodyParams {
+  double mass_kg = kRequired;
+  double pitch_inertia_kgm2 = kRequired;
+  double cg_height_m = kRequired;  ///< above rail, at rest without load
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("mass_kg", mass_kg, kPositive);
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
+    v.Number("cg_height_m", cg_height_m, kPositive);
+  }
+};
+
+/// A wheelset: two wheels and their axle. Its CG is at the height of the wheel radius.
+struct WheelsetParams {
+  double mass_kg = kRequired;
+  double pitch_inertia_kgm2 = kRequired;  ///< J, of the rotation
+  double wheel_radius_m = kRequired;      ///< r
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("mass_kg", mass_kg, kPositive);
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
+    v.Number("wheel_radius_m", wheel_radius_m, kPositive);
+  }
+};
+
+/// Contact of one wheel with its rail; two per wheelset.
+struct WheelRailParams {
+  NormalContactParams normal;  ///< of one wheel
+  HertzParams hertz;
+  double shear_modulus_pa = kRequired;                   ///< G
+  double creepage_regularisation_speed_mps = kRequired;  ///< v0
+  AdhesionParams adhesion;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Group("normal", normal);
+    v.Group("hertz", hertz);
+    v.Number("shear_modulus_pa", shear_modulus_pa, kPositive);
+    v.Number("creepage_regularisation_speed_mps", creepage_regularisation_speed_mps, kPositive);
+    v.Part("adhesion", adhesion, "adhesion");
+  }
+};
+
+/// A four-axle vehicle on two three-piece bogies: all that its LTD and its 2D model need.
+struct VehicleParams {
+  std::string name;
+  double length_m = kRequired;  ///< over couplers
+  BodyParams carbody;
+  BodyParams bolster;      ///< without the wedges
+  BodyParams bogie_frame;  ///< the two side frames of a bogie as one body
+  WheelsetParams wheelset;
+  double wedge_mass_kg = kRequired;  ///< of one of the eight wedges; moves with its bolster
+  double half_bogie_spacing_m = kRequired;
+  double half_wheelset_spacing_m = kRequired;
+  double coupler_height_m = kRequired;  ///< above rail
+  WheelRailParams wheel_rail;
+  LinearSpringDamper adaptor_pad;      ///< one of two per wheelset; the same in x and z
+  SpringNestParams spring_nest;        ///< a quarter of a bogie
+  FrictionWedgeParams friction_wedge;  ///< one of four per bogie
+  LinearSpringDamper bolster_guide;    ///< longitudinal, bolster in frame
+  double bolster_guide_height_m = kRequired;
+  CentrePlateParams centre_plate;
+  BrakeRiggingParams brake_rigging;
+  PropulsionResistanceParams propulsion_resistance;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Number("length_m", length_m, kPositive);
+    v.Group("carbody", carbody);
+    v.Group("bolster", bolster);
+    v.Group("bogie_frame", bogie_frame);
+    v.Group("wheelset", wheelset);
+    v.Number("wedge_mass_kg", wedge_mass_kg, kNonNegative);
+    v.Number("half_bogie_spacing_m", half_bogie_spacing_m, kPositive);
+    v.Number("half_wheelset_spacing_m", half_wheelset_spacing_m, kPositive);
+    v.Number("coupler_height_m", coupler_height_m, kPositive);
+    v.Group("wheel_rail", wheel_rail);
+    v.Group("adaptor_pad", adaptor_pad);
+    v.Group("spring_nest", spring_nest);
+    v.Group("friction_wedge", friction_wedge);
+    v.Group("bolster_guide", bolster_guide);
+    v.Number("bolster_guide_height_m", bolster_guide_height_m, kPositive);
+    v.Group("centre_plate", centre_plate);
+    v.Group("brake_rigging", brake_rigging);
+    v.Group("propulsion_resistance", propulsion_resistance);
+    v.Check(2.0 * (half_bogie_spacing_m + half_wheelset_spacing_m) < length_m, "length_m",
+            "must exceed the distance between the outer wheelsets");
+  }
+
+  /// Mass of the whole vehicle [kg].
+  double TotalMass() const {
+    return carbody.mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) + 2.0 * bogie_frame.mass_kg +
+           4.0 * wheelset.mass_kg;
+  }
+  double Weight() const { return kGravity * TotalMass(); }  ///< [N]
+};
+
+}  // namespace train_dynamics

@@ -1,0 +1,231 @@
+#pragma once
+
+#include <array>
+
+#include "train_dynamics/track/track.h"
+#include "train_dynamics/vehicle/vehicle_params.h"
+#include "train_dynamics/vehicle/wheelset_slip.h"
+#include "train_dynamics/vehicle/work.h"
+
+/// The 27-DoF wagon: nine bodies in the longitudinal-vertical plane.
+///
+///                 ______________________________________________
+///     coupler o--|                 carbody (0)                  |--o coupler
+///                |__________________________________________CG__|
+///                   rim v v rim                    v v            centre plates
+///     <- rear      [bolster 2]                 [bolster 1]        front ->  x
+///                   nests, wedges                                           z up
+///                [  bogie frame 4  ]        [  bogie frame 3  ]         pitch: nose down positive
+///                 pad          pad           pad          pad
+///                (wheelset 8) (7)           (6)          (5)
+///     =================================================================== rail
+///
+/// Coordinates are displacements from the state in which springs are unloaded and wheels just touch; small
+/// angles: the point at (dx, dz) from a CG moves by u_x = x + dz theta, u_z = z - dx theta.
+namespace train_dynamics {
+
+enum Body {
+  kCarbody,
+  kFrontBolster,
+  kRearBolster,
+  kFrontFrame,
+  kRearFrame,
+  kWheelset1,
+  kWheelset2,
+  kWheelset3,
+  kWheelset4,
+  kBodies  ///< their number
+};
+inline constexpr int kWheelsets = 4;
+inline constexpr int kBogies = 2;
+
+inline constexpr std::array<const char*, kBodies> kBodyNames = {
+    "carbody",    "front bolster", "rear bolster", "front bogie frame", "rear bogie frame",
+    "wheelset 1", "wheelset 2",    "wheelset 3",   "wheelset 4"};
+
+/// One number per degree of freedom: positions, velocities or forces of the bodies.
+template <class T>
+struct BodyVector {
+  std::array<T, kBodies> x{}, z{}, pitch{};
+};
+
+/// One number per element: deflections if made of positions, rates if made of velocities, forces.
+///
+/// Vertical elements count compression positive, longitudinal ones the forward displacement of the upper body
+/// over the lower one (pads: of the wheelset over the frame). A force is positive where it resists a positive
+/// deflection.
+template <class T>
+struct ElementVector {
+  std::array<T, kWheelsets> pad_x{}, pad_z{};  ///< by wheelset
+  std::array<T, 4> nest{}, wedge{}, rim{};     ///< 2 bogie + end, end 0 = front
+  std::array<T, kBogies> guide_x{}, plate_x{};
+};
+
+template <class T>
+struct WagonState {
+  T origin_m{};  ///< position of the wagon's centre along the track at the start; constant
+  BodyVector<T> position;
+  BodyVector<T> velocity;
+  VehicleWork<T> work;
+};
+
+/// What a wagon shows of its last step, for records.
+template <class T>
+struct WagonOutput {
+  std::array<T, kWheelsets> normal_force_n{};  ///< of both wheels
+  std::array<T, kWheelsets> creepage{};        ///< (v - omega r) / sqrt(v^2 + v0^2)
+  std::array<T, kWheelsets> creep_force_n{};   ///< of both wheels, backwards positive
+  std::array<T, kWheelsets> shoe_force_n{};    ///< tangential, at the tread, backwards positive while turning
+  std::array<T, 4> wedge_friction_n{};         ///< of the left and right wedge together, up on the bolster
+};
+
+/// What is constant in a wagon.
+struct Wagon {
+  /// @throws std::invalid_argument when the parameters violate their rules (Validate in parameters.h).
+  explicit Wagon(const VehicleParams& params);
+
+  VehicleParams params;
+  FrictionWedge wedge;
+  std::array<double, kBodies> mass_kg, inv_mass_per_kg;
+  std::array<double, kBodies> inertia_kgm2, inv_inertia_per_kgm2;
+  std::array<double, kWheelsets> wheelset_offset_m;  ///< from the wagon's centre, forward positive
+  std::array<double, 4> nest_offset_m, wedge_offset_m,
+      rim_offset_m;                                 ///< from the bolster's centre: 2 bogie + end
+  std::array<double, kBogies> bogie_offset_m;       ///< from the wagon's centre
+  double pad_frame_arm_m;                           ///< height of the pads over the frame's CG
+  double guide_bolster_arm_m, guide_frame_arm_m;    ///< heights of the guide over the CGs
+  double plate_carbody_arm_m, plate_bolster_arm_m;  ///< heights of the centre plate over the CGs
+  double coupler_arm_m;                             ///< height of the couplers over the carbody's CG
+  double weight_n;
+  double creep_stiffness;  ///< see CreepStiffness
+  RollingInertia rolling;
+};
+
+/// The bogie (0 front, 1 rear) of a wheelset (0 ... 3) or of a quarter (2 bogie + end).
+inline constexpr int BogieOf(int wheelset_or_quarter) { return wheelset_or_quarter / 2; }
+
+/// Deflections of all elements from the bodies' positions; rates from their velocities. Linear.
+template <class T>
+ElementVector<T> ElementsOf(const Wagon& w, const BodyVector<T>& q) {
+  ElementVector<T> e;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int frame = kFrontFrame + BogieOf(i), wheelset = kWheelset1 + i;
+    const double dx = w.wheelset_offset_m[i] - w.bogie_offset_m[BogieOf(i)];
+    e.pad_x[i] = q.x[wheelset] - (q.x[frame] + w.pad_frame_arm_m * q.pitch[frame]);
+    e.pad_z[i] = q.z[wheelset] - (q.z[frame] - dx * q.pitch[frame]);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const int frame = kFrontFrame + BogieOf(i), bolster = kFrontBolster + BogieOf(i);
+    const T lift = q.z[frame] - q.z[bolster];
+    const T turn = q.pitch[frame] - q.pitch[bolster];
+    e.nest[i] = lift - w.nest_offset_m[i] * turn;
+    e.wedge[i] = lift - w.wedge_offset_m[i] * turn;
+    e.rim[i] = (q.z[bolster] - w.rim_offset_m[i] * q.pitch[bolster]) -
+               (q.z[kCarbody] - (w.bogie_offset_m[BogieOf(i)] + w.rim_offset_m[i]) * q.pitch[kCarbody]);
+  }
+  for (int b = 0; b < kBogies; ++b) {
+    const int frame = kFrontFrame + b, bolster = kFrontBolster + b;
+    e.guide_x[b] = (q.x[bolster] + w.guide_bolster_arm_m * q.pitch[bolster]) -
+                   (q.x[frame] + w.guide_frame_arm_m * q.pitch[frame]);
+    e.plate_x[b] = (q.x[kCarbody] + w.plate_carbody_arm_m * q.pitch[kCarbody]) -
+                   (q.x[bolster] + w.plate_bolster_arm_m * q.pitch[bolster]);
+  }
+  return e;
+}
+
+/// Adds to the bodies' forces what the elements exert on them: the transpose of ElementsOf, so that the work
+/// of the bodies' forces is minus the work of the elements' forces in every motion.
+template <class T>
+void AddElementForces(const Wagon& w, const ElementVector<T>& force, BodyVector<T>& f) {
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int frame = kFrontFrame + BogieOf(i), wheelset = kWheelset1 + i;
+    const double dx = w.wheelset_offset_m[i] - w.bogie_offset_m[BogieOf(i)];
+    f.x[wheelset] = f.x[wheelset] - force.pad_x[i];
+    f.z[wheelset] = f.z[wheelset] - force.pad_z[i];
+    f.x[frame] = f.x[frame] + force.pad_x[i];
+    f.z[frame] = f.z[frame] + force.pad_z[i];
+    f.pitch[frame] = f.pitch[frame] + (w.pad_frame_arm_m * force.pad_x[i] - dx * force.pad_z[i]);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const int frame = kFrontFrame + BogieOf(i), bolster = kFrontBolster + BogieOf(i);
+    const T apart = force.nest[i] + force.wedge[i];
+    const T moment = w.nest_offset_m[i] * force.nest[i] + w.wedge_offset_m[i] * force.wedge[i];
+    f.z[frame] = f.z[frame] - apart;
+    f.pitch[frame] = f.pitch[frame] + moment;
+    f.z[bolster] = f.z[bolster] + (apart - force.rim[i]);
+    f.pitch[bolster] = f.pitch[bolster] + (w.rim_offset_m[i] * force.rim[i] - moment);
+    f.z[kCarbody] = f.z[kCarbody] + force.rim[i];
+    f.pitch[kCarbody] = f.pitch[kCarbody] - (w.bogie_offset_m[BogieOf(i)] + w.rim_offset_m[i]) * force.rim[i];
+  }
+  for (int b = 0; b < kBogies; ++b) {
+    const int frame = kFrontFrame + b, bolster = kFrontBolster + b;
+    f.x[bolster] = f.x[bolster] + (force.plate_x[b] - force.guide_x[b]);
+    f.pitch[bolster] = f.pitch[bolster] +
+                       (w.plate_bolster_arm_m * force.plate_x[b] - w.guide_bolster_arm_m * force.guide_x[b]);
+    f.x[frame] = f.x[frame] + force.guide_x[b];
+    f.pitch[frame] = f.pitch[frame] + w.guide_frame_arm_m * force.guide_x[b];
+    f.x[kCarbody] = f.x[kCarbody] - force.plate_x[b];
+    f.pitch[kCarbody] = f.pitch[kCarbody] - w.plate_carbody_arm_m * force.plate_x[b];
+  }
+}
+
+/// Forces that the elements would exert without any dissipation, as functions of their deflections.
+template <class T>
+ElementVector<T> ElasticForces(const Wagon& w, const ElementVector<T>& deflection) {
+  const VehicleParams& p = w.params;
+  ElementVector<T> force;
+  for (int i = 0; i < kWheelsets; ++i) {
+    force.pad_x[i] = 2.0 * p.adaptor_pad.stiffness_n_per_m * deflection.pad_x[i];
+    force.pad_z[i] = 2.0 * p.adaptor_pad.stiffness_n_per_m * deflection.pad_z[i];
+  }
+  for (int i = 0; i < 4; ++i) {  // each quarter twice: left and right
+    force.nest[i] = 2.0 * SpringNestForce(p.spring_nest, deflection.nest[i]);
+    force.wedge[i] =
+        (2.0 * w.wedge.kappa) * WedgeSpringForce(p.friction_wedge, w.wedge.kappa * deflection.wedge[i]);
+    force.rim[i] = RimForce(p.centre_plate, deflection.rim[i], T(0.0));
+  }
+  for (int b = 0; b < kBogies; ++b) {
+    force.guide_x[b] = p.bolster_guide.stiffness_n_per_m * deflection.guide_x[b];
+    force.plate_x[b] = p.centre_plate.stiffness_n_per_m * deflection.plate_x[b];
+  }
+  return force;
+}
+
+/// Forces of the linear dampers; one-sided where the contact is (its whole force stays >= 0).
+template <class T>
+ElementVector<T> DampingForces(const Wagon& w, const ElementVector<T>& deflection,
+                               const ElementVector<T>& elastic, const ElementVector<T>& rate) {
+  const VehicleParams& p = w.params;
+  ElementVector<T> force;
+  for (int i = 0; i < kWheelsets; ++i) {
+    force.pad_x[i] = 2.0 * p.adaptor_pad.damping_ns_per_m * rate.pad_x[i];
+    force.pad_z[i] = 2.0 * p.adaptor_pad.damping_ns_per_m * rate.pad_z[i];
+  }
+  for (int i = 0; i < 4; ++i) {
+    force.rim[i] = RimForce(p.centre_plate, deflection.rim[i], rate.rim[i]) - elastic.rim[i];
+  }
+  for (int b = 0; b < kBogies; ++b) {
+    force.guide_x[b] = p.bolster_guide.damping_ns_per_m * rate.guide_x[b];
+    force.plate_x[b] = p.centre_plate.damping_ns_per_m * rate.plate_x[b];
+  }
+  return force;
+}
+
+/// Wagon at rest on level rail under its own weight, wedges without friction, moving at `speed_mps` with
+/// rolling wheels.
+WagonState<double> StaticEquilibrium(const Wagon& wagon, double origin_m, double speed_mps);
+
+/// Displacement of the coupler heads since the start, or their velocity [m, m/s]: x + (h_coupler - h_CG)
+/// theta.
+template <class T>
+T CouplerHead(const Wagon& wagon, const BodyVector<T>& carbody_motion) {
+  return carbody_motion.x[kCarbody] + wagon.coupler_arm_m * carbody_motion.pitch[kCarbody];
+}
+
+/// Kinetic energy of the nine bodies, rotation included [J].
+double KineticEnergy(const Wagon& wagon, const WagonState<double>& state);
+
+/// Elastic energy of all elements and contacts plus the bodies' weight times their height z [J].
+double PotentialEnergy(const Wagon& wagon, const TrackParams& track, const WagonState<double>& state);
+
+}  // namespace train_dynamics

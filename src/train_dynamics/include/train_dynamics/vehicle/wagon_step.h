@@ -1,0 +1,232 @@
+#pragma once
+
+#include "train_dynamics/vehicle/wagon.h"
+
+namespace train_dynamics {
+
+/// One time step of the wagon under loads that are held over it.
+///
+///   1. half drift: positions to the middle of the step;
+///   2. compliant forces there, dampers at the rates of the step's start (largest elastic frequency about
+///   1000 1/s, so
+///      that 1 ms is inside the explicit limit), weight, couplers, drag;
+///   3. kick of carbody, bolsters and frames, with the wedges' set-valued friction as a complementarity
+///   problem on the
+///      relative rates at the END of the step: they stick or slip without chatter;
+///   4. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
+///   5. half drift.
+///
+/// A force times the mean of the rates before and after is its exact work in the step: the ledger books that.
+/// Left out: the moment by which brake shoes turn the bogie frames, and the wedges' own inertia.
+///
+/// @param output  receives the step's contact and friction forces; may be null
+template <class T>
+void StepWagon(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T>& s, WagonOutput<T>* output);
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// q += h v
+template <class T>
+void Drift(const BodyVector<T>& v, double h, BodyVector<T>& q) {
+  for (int i = 0; i < kBodies; ++i) {
+    q.x[i] = q.x[i] + h * v.x[i];
+    q.z[i] = q.z[i] + h * v.z[i];
+    q.pitch[i] = q.pitch[i] + h * v.pitch[i];
+  }
+}
+
+/// Contact forces between the four wheelsets and the rail at the step's middle.
+template <class T>
+struct RailForces {
+  std::array<T, kWheelsets> normal{};    ///< N of both wheels [N]
+  std::array<T, kWheelsets> damping{};   ///< the part of N that is not elastic [N]
+  std::array<T, kWheelsets> slope{};     ///< of the rail [-]
+  std::array<T, kWheelsets> friction{};  ///< mu0 [-]
+};
+
+template <class T>
+RailForces<T> ContactForces(const Wagon& w, const TrackParams& track, const WagonState<T>& s) {
+  const NormalContactParams& contact = w.params.wheel_rail.normal;
+  RailForces<T> rail;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int b = kWheelset1 + i;
+    const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
+    const RailPoint<T> point = RailUnder(track, at, w.params.wheel_rail.adhesion.friction_coefficient);
+    const T penetration = point.height - s.position.z[b];
+    const T rate = point.slope * s.velocity.x[b] - s.velocity.z[b];
+    rail.normal[i] =
+        2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
+    rail.damping[i] = rail.normal[i] - 2.0 * OneSidedForce(contact.stiffness_n_per_m, 0.0, penetration, rate);
+    rail.slope[i] = point.slope;
+    rail.friction[i] = point.friction;
+  }
+  return rail;
+}
+
+/// Friction forces of the wedges of all bogies that bring their relative rates to rest or reach their bounds.
+///
+/// Per bogie, with the compression rates c* that the wedges would have at the end of the step without
+/// friction and the inverse masses W = [[a+b, a-b], [a-b, a+b]], a = 1/m_b + 1/m_f, b = offset^2 (1/I_b +
+/// 1/I_f):
+///
+///   c = c* - dt W f,   lower <= f <= upper,   c > 0 -> f = upper (loading),   c < 0 -> f = lower
+///
+/// Projected Gauss-Seidel; the coupling |a-b| / (a+b) is about 0.07, so that each sweep gains a factor of
+/// 200.
+template <class T>
+std::array<T, 4> WedgeFrictionForces(const Wagon& w, const std::array<T, 4>& deflection,
+                                     const std::array<T, 4>& rate, const std::array<T, 4>& free_rate,
+                                     double dt) {
+  constexpr int kSweeps = 4;
+  std::array<T, 4> f{};
+  for (int bogie = 0; bogie < kBogies; ++bogie) {
+    const int bolster = kFrontBolster + bogie, frame = kFrontFrame + bogie;
+    const double a = w.inv_mass_per_kg[bolster] + w.inv_mass_per_kg[frame];
+    const double offset = w.params.friction_wedge.offset_m;
+    const double b = offset * offset * (w.inv_inertia_per_kgm2[bolster] + w.inv_inertia_per_kgm2[frame]);
+    const double own = dt * (a + b), other = dt * (a - b), inv_own = 1.0 / own;
+    WedgeFrictionBounds<T> bounds[2];
+    for (int end = 0; end < 2; ++end) {
+      const T travel = w.wedge.kappa * deflection[2 * bogie + end];
+      bounds[end] = WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.params.friction_wedge, travel),
+                                  rate[2 * bogie + end]);
+    }
+    const T c0 = free_rate[2 * bogie], c1 = free_rate[2 * bogie + 1];
+    T f0(0.0), f1(0.0);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      f0 = Clamp((c0 - other * f1) * inv_own, bounds[0].lower, bounds[0].upper);
+      f1 = Clamp((c1 - other * f0) * inv_own, bounds[1].lower, bounds[1].upper);
+    }
+    f[2 * bogie] = f0;
+    f[2 * bogie + 1] = f1;
+  }
+  return f;
+}
+
+/// Velocities after the forces have acted for dt on the bodies [begin, end).
+template <class T>
+void Kick(const Wagon& w, const BodyVector<T>& force, double dt, int begin, int end, BodyVector<T>& v) {
+  for (int i = begin; i < end; ++i) {
+    v.x[i] = v.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
+    v.z[i] = v.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
+    v.pitch[i] = v.pitch[i] + (dt * w.inv_inertia_per_kgm2[i]) * force.pitch[i];
+  }
+}
+
+template <class T>
+void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T>& s, WagonOutput<T>* output) {
+  const VehicleParams& p = w.params;
+  const BodyVector<T> v0 = s.velocity;
+  BodyVector<T>& v1 = s.velocity;
+  Drift(v0, 0.5 * dt, s.position);
+
+  // Compliant forces at the middle of the step.
+  const ElementVector<T> deflection = ElementsOf(w, s.position);
+  const ElementVector<T> rate0 = ElementsOf(w, v0);
+  const ElementVector<T> elastic = ElasticForces(w, deflection);
+  const ElementVector<T> damping = DampingForces(w, deflection, elastic, rate0);
+  const RailForces<T> rail = ContactForces(w, track, s);
+  BodyVector<T> force;
+  AddElementForces(w, elastic, force);
+  AddElementForces(w, damping, force);
+
+  // Weight, couplers and drag.
+  const T grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
+  for (int i = 0; i < kBodies; ++i) {
+    const double weight = kGravity * w.mass_kg[i];
+    force.x[i] = force.x[i] - weight * grade;
+    force.z[i] = force.z[i] - weight;
+  }
+  const T speed = v0.x[kCarbody];
+  const T coupler = loads.front_coupler_n - loads.rear_coupler_n;
+  const T drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
+  force.x[kCarbody] = force.x[kCarbody] + (coupler - drag);
+  force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * coupler;
+
+  // Carbody, bolsters and frames, with the wedges' friction.
+  Kick(w, force, dt, kCarbody, kWheelset1, v1);
+  ElementVector<T> wedges{};
+  wedges.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
+  BodyVector<T> friction_force;
+  AddElementForces(w, wedges, friction_force);
+  Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
+
+  // Wheelsets.
+  const T shoes = 0.25 * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  const T rolling = 0.25 * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
+  const T dynamic_brake = 0.25 * loads.dynamic_brake_n;
+  const T curving = 0.25 * loads.curving_resistance_n;
+  const T retarding = shoes + rolling + dynamic_brake + curving;
+  const T traction = 0.25 * loads.traction_n;
+  const double r = w.rolling.radius_m;
+  const double v_ref = p.wheel_rail.creepage_regularisation_speed_mps;
+  VehicleWork<T>& work = s.work;
+  T creep_loss(0.0), contact_loss(0.0), brake_path(0.0), traction_path(0.0);
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int b = kWheelset1 + i;
+    const CreepLaw<T> law = FreezeCreepLaw(p.wheel_rail.adhesion, w.creep_stiffness, rail.normal[i],
+                                           rail.friction[i], v0.x[b], v_ref);
+    const T push = force.x[b] - rail.normal[i] * rail.slope[i];
+    const RollingInput<T> in{v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * traction,
+                             r * retarding};
+    const RollingResult<T> out = StepRolling(w.rolling, law, in, dt);
+    v1.x[b] = out.speed;
+    v1.pitch[b] = out.spin;
+    v1.z[b] = v0.z[b] + (dt * w.inv_mass_per_kg[b]) * (force.z[b] + rail.normal[i]);
+
+    const T turned = 0.5 * dt * (v0.pitch[b] + out.spin);
+    const T moved = 0.5 * dt * (v0.x[b] + out.speed);
+    const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
+    const T mobilised = out.brake_torque / Max(T(1e-300), in.brake_torque);  // -1 ... 1
+    creep_loss = creep_loss + out.creep_force * (moved - r * turned);
+    contact_loss = contact_loss + rail.damping[i] * (rail.slope[i] * moved - lifted);
+    brake_path = brake_path + mobilised * r * turned;
+    traction_path = traction_path + r * turned;
+    if (output != nullptr) {
+      output->normal_force_n[i] = rail.normal[i];
+      output->creep_force_n[i] = out.creep_force;
+      output->creepage[i] = (out.speed - r * out.spin) / Sqrt(out.speed * out.speed + v_ref * v_ref);
+      output->shoe_force_n[i] = shoes * mobilised;
+    }
+  }
+  if (output != nullptr) output->wedge_friction_n = wedges.wedge;
+
+  Drift(v1, 0.5 * dt, s.position);
+
+  // The ledger: force x mean rate x dt, element by element.
+  const ElementVector<T> rate1 = ElementsOf(w, v1);
+  const auto lost = [dt](const T& f, const T& r0, const T& r1) { return 0.5 * dt * f * (r0 + r1); };
+  T pads(0.0), wedge_loss(0.0), guides(0.0), plates(0.0);
+  for (int i = 0; i < 4; ++i) {
+    pads = pads + lost(damping.pad_x[i], rate0.pad_x[i], rate1.pad_x[i]) +
+           lost(damping.pad_z[i], rate0.pad_z[i], rate1.pad_z[i]);
+    wedge_loss = wedge_loss + lost(wedges.wedge[i], rate0.wedge[i], rate1.wedge[i]);
+    plates = plates + lost(damping.rim[i], rate0.rim[i], rate1.rim[i]);
+  }
+  for (int b = 0; b < kBogies; ++b) {
+    guides = guides + lost(damping.guide_x[b], rate0.guide_x[b], rate1.guide_x[b]);
+    plates = plates + lost(damping.plate_x[b], rate0.plate_x[b], rate1.plate_x[b]);
+  }
+  T momentum_path(0.0);  // sum of weight x path: the grade acts on every body
+  for (int i = 0; i < kBodies; ++i) momentum_path = momentum_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
+  const auto book = [&work](Dissipation element, const T& energy) {
+    work.dissipated[element] = work.dissipated[element] + energy;
+  };
+  book(kWheelRailCreep, creep_loss);
+  book(kWheelRailNormal, contact_loss);
+  book(kAdaptorPads, pads);
+  book(kFrictionWedges, wedge_loss);
+  book(kBolsterGuides, guides);
+  book(kCentrePlates, plates);
+  book(kBrakeShoes, shoes * brake_path);
+  book(kDynamicBrake, dynamic_brake * brake_path);
+  book(kRollingResistance, rolling * brake_path);
+  book(kCurvingResistance, curving * brake_path);
+  book(kAirDrag, lost(drag, v0.x[kCarbody], v1.x[kCarbody]));
+  work.gravity = work.gravity - (0.5 * dt * kGravity) * grade * momentum_path;
+  work.traction = work.traction + traction * traction_path;
+}
+
+}  // namespace train_dynamics

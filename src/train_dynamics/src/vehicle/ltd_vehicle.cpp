@@ -1,0 +1,12 @@
+#include "train_dynamics/vehicle/ltd_vehicle.h"
+
+namespace train_dynamics {
+
+LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia)
+    : brake_rigging(params.brake_rigging),
+      propulsion_resistance(params.propulsion_resistance),
+      weight_n(params.Weight()),
+      inertia_kg(params.TotalMass() +
+                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)) {}
+
+}  // namespace train_dynamics
