@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/coupler/connection.h"
+#include "train_dynamics/vehicle/vehicle_params.h"
+
+namespace train_dynamics {
+
+/// A run of equal vehicles, possibly in permanently joined units.
+struct ConsistGroupParams {
+  VehicleParams vehicle;
+  int count = 1;
+  int vehicles_per_unit = 1;         ///< 2: pairs, as of draw-bar wagons
+  ConnectionParams unit_connection;  ///< within a unit
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Part("vehicle", vehicle, "vehicles");
+    v.Integer("count", count, Range{1, 100000, false, false});
+    v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
+    if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
+    v.Check(count % vehicles_per_unit == 0, "count", "must be a multiple of vehicles_per_unit");
+  }
+};
+
+/// A train: groups of vehicles from front to rear. Between units stands `connection`.
+struct TrainParams {
+  std::string name;
+  ConnectionParams connection;
+  std::vector<ConsistGroupParams> consist;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Part("connection", connection, "couplers");
+    v.List("consist", consist);
+    v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
+    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all");
+  }
+
+  int VehicleCount() const;
+};
+
+/// A train vehicle by vehicle. Vehicles count from 0 here, from 1 in everything that people read.
+struct Consist {
+  explicit Consist(const TrainParams& train);
+
+  std::vector<VehicleParams> vehicle_types;
+  std::vector<int> vehicle_type;  ///< [vehicle] index into vehicle_types
+  std::vector<ConnectionParams> connection_types;
+  std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
+  std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling
+
+  int vehicles() const { return static_cast<int>(vehicle_type.size()); }
+  const VehicleParams& vehicle(int i) const { return vehicle_types[vehicle_type[i]]; }
+};
+
+}  // namespace train_dynamics

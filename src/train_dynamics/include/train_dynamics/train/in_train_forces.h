@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "train_dynamics/train/consist.h"
+
+namespace train_dynamics {
+
+/// Largest tension and compression of a connection so far, and when.
+struct ForceExtremes {
+  double tension_n = 0.0, tension_time_s = 0.0;          ///< >= 0
+  double compression_n = 0.0, compression_time_s = 0.0;  ///< <= 0
+};
+
+/// Work that the connections have taken up [J].
+struct ConnectionEnergy {
+  double potential = 0.0;    ///< elastic energy stored now
+  double draft_gears = 0.0;  ///< dissipated so far
+  double draw_bars = 0.0;    ///< dissipated so far
+};
+
+/// The forces between the vehicles of a train.
+///
+/// Extension of connection c:  q_c = q_start + u_c - u_(c+1),  u the displacements of the coupler heads.
+/// Forces are evaluated at the middle of the coming exchange interval H, predicted from its start,
+///
+///   F = F(q + q' H/2, q'),
+///
+/// and held over it. With the force at the interval's start instead, the exchange would feed energy into
+/// undamped connections (a negative damping ratio of omega H / 4). Exact when H is one step of the leapfrog
+/// integrator.
+class InTrainForces {
+ public:
+  /// @param prediction_s  how far ahead of the exchange the forces are evaluated: H/2, or 0 for the Newmark
+  /// integrator
+  InTrainForces(const Consist& consist, SlackState slack, double prediction_s);
+
+  /// Takes the heads' displacements at time 0, where the connections stand in their start state of slack.
+  void Begin(const std::vector<double>& head_displacement_m);
+
+  /// Forces for the coming interval, booked at time_s, from the heads' velocities [m/s].
+  /// `force_n` gets n + 1 entries for n vehicles: [i] is in front of vehicle i, [i + 1] behind it; the ends
+  /// are 0.
+  void Evaluate(double time_s, const std::vector<double>& head_velocity_mps, std::vector<double>& force_n);
+
+  /// Books the work of the last forces, once the interval has brought the heads to these displacements.
+  void CloseInterval(const std::vector<double>& head_displacement_m);
+
+  int connections() const { return static_cast<int>(start_extension_m_.size()); }
+  const std::vector<ForceExtremes>& extremes() const { return extremes_; }
+  /// Extension of each connection at the last exchange [m].
+  const std::vector<double>& extension_m() const { return extension_m_; }
+  /// Memory of stick-spring draft gears; part of the train's state.
+  const std::vector<StickState<double>>& stick_states() const { return stick_; }
+  ConnectionEnergy Energy() const;
+
+ private:
+  std::vector<ConnectionParams> types_;
+  std::vector<DraftGear> gears_;  ///< [type]; unused entries for draw-bars
+  std::vector<int> type_;         ///< [connection]
+  double prediction_s_;
+  std::vector<double> start_extension_m_, extension_m_;
+  std::vector<double> force_n_, elastic_n_;  ///< of the running interval
+  std::vector<StickState<double>> stick_;
+  std::vector<double> dissipated_j_;
+  std::vector<ForceExtremes> extremes_;
+};
+
+}  // namespace train_dynamics

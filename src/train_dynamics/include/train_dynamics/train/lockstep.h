@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/vehicle/wagon.h"
+
+/// The exchange between the master, which computes what acts between vehicles, and the ranks, which integrate
+/// them.
+///
+///   at the start      master -> rank   which vehicles, their parameters, the track     (Start)
+///                     rank -> master   their state at time 0, as a record
+///   exchange k        master -> rank   k, dt, steps, coupler forces, cylinder pressures  (ExchangeRequest)
+///                     rank -> master   coupler heads at the interval's end; a record when asked
+///                     (ExchangeReply)
+///   barrier           the master has every reply before it computes exchange k + 1
+///
+/// Forces and pressures are those of the middle of the interval and are held over it. All sums over vehicles
+/// are made by the master in the order of the vehicles, so that a result does not depend on which rank a
+/// vehicle is in.
+namespace train_dynamics {
+
+struct ExchangeRequest {
+  std::uint64_t exchange = 0;  ///< k, from 0
+  double dt_s = 0.0;           ///< step of the vehicles' integrators
+  int steps = 0;               ///< per exchange; the interval is steps * dt_s
+  bool record = false;         ///< the reply shall hold the record of the interval's end
+  bool ledger = false;         ///< ... and the vehicles' energies
+  std::vector<double>
+      coupler_force_n;  ///< [vehicles + 1]: [i] before, [i + 1] behind vehicle i; tension positive
+  std::vector<double> cylinder_pressure_pa;  ///< [vehicles]
+};
+
+/// The energies of one vehicle [J].
+struct VehicleEnergy {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  VehicleWork<double> work;
+};
+
+/// One wagon in full detail, at the end of a step.
+struct WagonDetail {
+  int vehicle = 0;  ///< index in the train, from 0
+  BodyVector<double> position, velocity;
+  WagonOutput<double> output;
+  std::array<double, 4> nest_compression_m{};
+};
+
+/// The fault that ends a run: a state that is not finite or absurd.
+struct VehicleFault {
+  int vehicle = -1;  ///< index in the train, from 0; -1: none
+  std::string what;  ///< body, quantity and value
+};
+
+/// All arrays are indexed by vehicle; those of a record stay as they are when none was asked for.
+struct ExchangeReply {
+  std::vector<double> head_displacement_m;  ///< of the coupler heads since the start, forward positive
+  std::vector<double> head_velocity_mps;
+  VehicleFault fault;  ///< the first in the order of the vehicles
+
+  std::vector<double> position_m;  ///< record: of the vehicle's centre along the track
+  std::vector<double> speed_mps;
+  std::vector<double> shoe_force_n;   ///< of all shoes, retarding positive
+  std::vector<double> wheel_force_n;  ///< longitudinal wheel-rail force, retarding positive
+  std::vector<double> creepage;       ///< of the wheelset with the largest size; NaN for LTD
+  std::vector<std::uint64_t> state_digest;
+  std::vector<VehicleEnergy> energy;  ///< ledger
+  std::vector<WagonDetail>
+      details;  ///< record: whoever has one of these vehicles fills its entry (2D model only)
+
+  /// @param detailed  indices of the vehicles to be recorded in full detail
+  ExchangeReply(int vehicles, const std::vector<int>& detailed);
+};
+
+/// How the master reaches all vehicles. The second of the two seams with virtual functions.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  /// Brings all vehicles to time 0 and fills a whole record, energies included.
+  virtual void Start(ExchangeReply& reply) = 0;
+  /// One exchange with every vehicle; returns when all have replied.
+  virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
+};
+
+/// A run that cannot go on: names the vehicle or connection, the quantity and the time.
+class SimulationFault : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// 64-bit digest of a sequence of numbers, by their bits: equal digests mean equal bits.
+class Digest {
+ public:
+  void Add(double value);
+  void Add(std::uint64_t value) { state_ = Mix(state_ ^ value); }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  /// A bijection of 64-bit words that changes about half of the bits for each bit of its argument.
+  static constexpr std::uint64_t Mix(std::uint64_t x) {
+    x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
+    x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
+    return x ^ (x >> 32);
+  }
+  std::uint64_t state_ = 0x9e3779b97f4a7c15u;
+};
+
+}  // namespace train_dynamics

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/train/train_master.h"
+
+namespace train_dynamics {
+
+/// What a run came to. Collected from its records as they pass.
+class RunSummary {
+ public:
+  RunSummary(const ScenarioParams& scenario, const Consist& consist);
+
+  /// An observer of the run's TrainMaster.
+  void Observe(const TrainRecord& record);
+
+  /// The summary as JSON text; keys carry their units, what does not exist is null.
+  /// @param fault  why the run ended early; empty: it did not, or was interrupted
+  std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
+
+  double MeanSpeed() const { return mean_speed_mps_; }  ///< of the train's momentum, at the last record [m/s]
+  double MeanDistance() const { return mean_distance_m_; }
+
+ private:
+  const ScenarioParams& scenario_;
+  std::vector<double> mass_kg_;
+  double total_mass_kg_ = 0.0;
+  double start_position_m_ = 0.0;  ///< mean
+  double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
+  double mean_distance_m_ = 0.0;
+  bool stopped_ = false;
+  double stop_time_s_ = 0.0, stop_distance_m_ = 0.0;
+  double initial_energy_j_ = 0.0;
+  EnergyLedger ledger_;  ///< the last one
+  std::uint64_t state_digest_ = 0;
+};
+
+}  // namespace train_dynamics

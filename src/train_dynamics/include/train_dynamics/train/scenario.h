@@ -1,0 +1,105 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/track/track.h"
+#include "train_dynamics/train/consist.h"
+#include "train_dynamics/vehicle/ltd_vehicle.h"
+
+namespace train_dynamics {
+
+enum class VehicleModel {
+  kTwoD,         ///< the 27-DoF wagon
+  kLtd,          ///< one DoF, with the equivalent rotational mass
+  kLtdNoInertia  ///< one DoF, without it
+};
+
+/// The name of a model in configurations and on command lines.
+const char* ModelName(VehicleModel model);
+
+/// A braking scenario: a train on a track under a list of driver commands. All that a run depends on.
+struct ScenarioParams {
+  std::string name;
+  std::string description;
+  VehicleModel model = VehicleModel::kTwoD;
+  TrainParams train;
+  TrackParams track;
+  std::string
+      pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
+  AirBrakeParams brake;
+  std::vector<BrakeCommand> commands;
+  double initial_speed_kmh = kRequired;
+  double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
+  SlackState initial_slack = SlackState::kStretched;
+  double duration_s = kRequired;
+  double dt_s = 0.001;
+  double exchange_interval_s = 0.001;  ///< a multiple of dt_s
+  double record_interval_s = 0.01;     ///< a multiple of exchange_interval_s
+  double ledger_interval_s = 1.0;      ///< of the energy ledger; a multiple of record_interval_s
+  LtdIntegrator integrator = LtdIntegrator::kLeapfrog;
+  std::vector<int> detail_vehicles;  ///< recorded in full detail; from 1, or from -1 for the last
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Text("description", description);
+    v.Choice("model", model,
+             {{"2d", VehicleModel::kTwoD},
+              {"ltd", VehicleModel::kLtd},
+              {"ltd-no-inertia", VehicleModel::kLtdNoInertia}});
+    v.Part("train", train, "trains");
+    v.Part("track", track, "tracks");
+    v.Text("pressure_table", pressure_table);
+    if (pressure_table.empty()) {
+      v.Part("brake", brake, "brakes");
+      v.List("commands", commands);
+      v.Check(CommandTimesAscend(), "commands", "must ascend in time_s");
+      v.Check(ReductionsMeasured(), "commands", "must keep reduction_kpa within brake.service.reduction_kpa");
+      v.Check(SourcesInTrain(), "brake", "must have its sources at vehicles of the train");
+    }
+    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
+    v.Number("start_position_m", start_position_m, kFinite);
+    v.Choice("initial_slack", initial_slack,
+             {{"stretched", SlackState::kStretched},
+              {"middle", SlackState::kMiddle},
+              {"bunched", SlackState::kBunched}});
+    v.Number("duration_s", duration_s, Range{0.0, 1e6});
+    v.Number("dt_s", dt_s, Range{1e-6, 0.1, false, false});
+    v.Number("exchange_interval_s", exchange_interval_s, kPositive);
+    v.Number("record_interval_s", record_interval_s, kPositive);
+    v.Number("ledger_interval_s", ledger_interval_s, kPositive);
+    v.Choice("integrator", integrator,
+             {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}});
+    v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false});
+    v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s");
+    v.Check(Multiple(record_interval_s, exchange_interval_s), "record_interval_s",
+            "must be a multiple of exchange_interval_s");
+    v.Check(Multiple(ledger_interval_s, record_interval_s), "ledger_interval_s",
+            "must be a multiple of record_interval_s");
+    v.Check(Multiple(duration_s, record_interval_s), "duration_s", "must be a multiple of record_interval_s");
+    v.Check(integrator == LtdIntegrator::kLeapfrog || model != VehicleModel::kTwoD, "integrator",
+            "must be leapfrog for the 2d model: explicit creep forces are unstable");
+    v.Check(DetailInTrain(), "detail_vehicles", "must name vehicles of the train");
+  }
+
+  int StepsPerExchange() const;
+  long Exchanges() const;
+  int ExchangesPerRecord() const;
+  int RecordsPerLedger() const;
+  double InitialSpeed() const { return initial_speed_kmh / 3.6; }  ///< [m/s]
+
+ private:
+  static bool Multiple(double whole, double part);
+  bool CommandTimesAscend() const;
+  bool ReductionsMeasured() const;
+  bool SourcesInTrain() const;
+  bool DetailInTrain() const;
+};
+
+/// Index from 0 of a vehicle that is numbered from 1, or from -1 for the last; -1 if the train has no such
+/// vehicle.
+int VehicleIndex(int number, int vehicles);
+
+}  // namespace train_dynamics

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "train_dynamics/train/energy_ledger.h"
+#include "train_dynamics/train/in_train_forces.h"
+#include "train_dynamics/train/lockstep.h"
+#include "train_dynamics/train/scenario.h"
+
+namespace train_dynamics {
+
+/// Cylinder pressure of each vehicle [Pa] at a time [s].
+using PressureSource = std::function<void(double time_s, std::vector<double>& pressure_pa)>;
+
+/// The air brake of a scenario as a source of pressures.
+PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
+
+/// The train at the end of an exchange, as it is recorded. Forces and pressures are those of the interval
+/// that ended.
+struct TrainRecord {
+  double time_s;
+  std::uint64_t exchange;  ///< number of exchanges so far
+  const ExchangeReply& vehicles;
+  const std::vector<double>& acceleration_mps2;    ///< mean over the record interval; NaN at time 0
+  const std::vector<double>& coupler_force_n;      ///< [vehicles + 1] as in ExchangeRequest
+  const std::vector<double>& coupler_extension_m;  ///< [connections]
+  const std::vector<double>& cylinder_pressure_pa;
+  std::uint64_t state_digest;  ///< chained over all records so far
+  const EnergyLedger* ledger;  ///< null where none is due
+};
+
+/// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.
+///
+/// Knows nothing of where the vehicles are; the transport does.
+class TrainMaster {
+ public:
+  using Observer = std::function<void(const TrainRecord&)>;
+
+  /// Keeps references: scenario, consist and transport must outlive the master.
+  TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
+              PressureSource pressures);
+
+  /// Called for every record, the one at time 0 included.
+  void AddObserver(Observer observer) { observers_.push_back(std::move(observer)); }
+
+  /// Brings the vehicles to time 0 and shows the first record.
+  void Start();
+  /// One exchange: the train moves on by one exchange interval.
+  /// @throws SimulationFault naming the vehicle, the quantity and the time
+  void Exchange();
+  bool Done() const { return static_cast<long>(exchange_) >= scenario_.Exchanges(); }
+
+  double time_s() const { return static_cast<double>(exchange_) * scenario_.exchange_interval_s; }
+  std::uint64_t exchange() const { return exchange_; }
+  const InTrainForces& in_train_forces() const { return forces_; }
+  std::uint64_t state_digest() const { return digest_; }
+
+ private:
+  void ShowRecord();
+
+  const ScenarioParams& scenario_;
+  Transport& transport_;
+  PressureSource pressures_;
+  InTrainForces forces_;
+  std::uint64_t exchange_ = 0;
+  std::uint64_t record_ = 0;
+  std::uint64_t digest_ = 0;
+  ExchangeRequest request_;
+  ExchangeReply reply_;
+  std::vector<double> last_speed_mps_, acceleration_mps2_;
+  std::vector<Observer> observers_;
+};
+
+}  // namespace train_dynamics

@@ -1,0 +1,29 @@
+#include "train_dynamics/train/energy_ledger.h"
+
+namespace train_dynamics {
+
+double EnergyLedger::Dissipated() const {
+  double sum = 0.0;
+  for (const auto& element : dissipated_j) sum += element.second;
+  return sum;
+}
+
+EnergyLedger MakeEnergyLedger(double time_s, const std::vector<VehicleEnergy>& vehicles,
+                              const ConnectionEnergy& connections) {
+  EnergyLedger ledger;
+  ledger.time_s = time_s;
+  for (const char* name : kDissipationNames) ledger.dissipated_j.emplace_back(name, 0.0);
+  for (const VehicleEnergy& vehicle : vehicles) {
+    ledger.kinetic_j += vehicle.kinetic;
+    ledger.potential_j += vehicle.potential;
+    ledger.gravity_work_j += vehicle.work.gravity;
+    ledger.traction_work_j += vehicle.work.traction;
+    for (int i = 0; i < kDissipations; ++i) ledger.dissipated_j[i].second += vehicle.work.dissipated[i];
+  }
+  ledger.potential_j += connections.potential;
+  ledger.dissipated_j.emplace_back("draft_gears", connections.draft_gears);
+  ledger.dissipated_j.emplace_back("draw_bars", connections.draw_bars);
+  return ledger;
+}
+
+}  // namespace train_dynamics

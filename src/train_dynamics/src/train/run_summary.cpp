@@ -1,0 +1,127 @@
+#include "train_dynamics/train/run_summary.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace train_dynamics {
+namespace {
+
+/// A train stands when no vehicle is faster than this [m/s].
+constexpr double kStandstill = 1e-3;
+constexpr double kKmhPerMps = 3.6;
+
+std::string Number(double value) {
+  if (!std::isfinite(value)) return "null";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", c);
+      quoted += escape;
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+/// The largest force over all connections as a JSON object; null for a train without connections.
+std::string Extreme(const std::vector<ForceExtremes>& extremes, double ForceExtremes::*force,
+                    double ForceExtremes::*time) {
+  const auto largest = std::max_element(
+      extremes.begin(), extremes.end(),
+      [force](const auto& a, const auto& b) { return std::abs(a.*force) < std::abs(b.*force); });
+  if (largest == extremes.end()) return "null";
+  return "{\"value\": " + Number((*largest).*force) +
+         ", \"connection\": " + std::to_string(largest - extremes.begin() + 1) +
+         ", \"time_s\": " + Number((*largest).*time) + "}";
+}
+
+}  // namespace
+
+RunSummary::RunSummary(const ScenarioParams& scenario, const Consist& consist) : scenario_(scenario) {
+  for (int i = 0; i < consist.vehicles(); ++i) {
+    mass_kg_.push_back(consist.vehicle(i).TotalMass());
+    total_mass_kg_ += mass_kg_.back();
+  }
+}
+
+void RunSummary::Observe(const TrainRecord& record) {
+  const std::vector<double>& speed = record.vehicles.speed_mps;
+  double momentum = 0.0, moment = 0.0;
+  bool standing = true;
+  for (size_t i = 0; i < speed.size(); ++i) {
+    momentum += mass_kg_[i] * speed[i];
+    moment += mass_kg_[i] * record.vehicles.position_m[i];
+    standing = standing && std::abs(speed[i]) < kStandstill;
+  }
+  if (record.exchange == 0) start_position_m_ = moment / total_mass_kg_;
+  mean_speed_mps_ = momentum / total_mass_kg_;
+  lead_speed_mps_ = speed.front();
+  tail_speed_mps_ = speed.back();
+  mean_distance_m_ = moment / total_mass_kg_ - start_position_m_;
+  if (standing && !stopped_) {
+    stop_time_s_ = record.time_s;
+    stop_distance_m_ = mean_distance_m_;
+  }
+  stopped_ = standing;
+  if (record.ledger != nullptr) {
+    ledger_ = *record.ledger;
+    if (record.exchange == 0) initial_energy_j_ = ledger_.Stored();
+  }
+  state_digest_ = record.state_digest;
+}
+
+std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
+  const double simulated_s = master.time_s();
+  const double vehicle_steps = static_cast<double>(master.exchange()) * scenario_.StepsPerExchange() *
+                               static_cast<double>(mass_kg_.size());
+  char digest[20];
+  std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
+  std::ostringstream json;
+  json << "{\n  \"scenario\": " << Quoted(scenario_.name) << ",\n  \"model\": \""
+       << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << mass_kg_.size()
+       << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
+       << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
+       << ",\n  \"simulated_s\": " << Number(simulated_s) << ",\n  \"wall_s\": " << Number(wall_s)
+       << ",\n  \"real_time_factor\": " << Number(simulated_s / wall_s)
+       << ",\n  \"ns_per_vehicle_step\": " << Number(1e9 * wall_s / vehicle_steps)
+       << ",\n  \"complete\": " << (master.Done() ? "true" : "false")
+       << ",\n  \"fault\": " << (fault.empty() ? "null" : Quoted(fault))
+       << ",\n  \"final_speed_kmh\": {\"mean\": " << Number(kKmhPerMps * mean_speed_mps_)
+       << ", \"lead\": " << Number(kKmhPerMps * lead_speed_mps_)
+       << ", \"tail\": " << Number(kKmhPerMps * tail_speed_mps_)
+       << "},\n  \"stopped\": " << (stopped_ ? "true" : "false")
+       << ",\n  \"stop_time_s\": " << (stopped_ ? Number(stop_time_s_) : "null")
+       << ",\n  \"stop_distance_m\": " << (stopped_ ? Number(stop_distance_m_) : "null")
+       << ",\n  \"max_tension_n\": "
+       << Extreme(master.in_train_forces().extremes(), &ForceExtremes::tension_n,
+                  &ForceExtremes::tension_time_s)
+       << ",\n  \"max_compression_n\": "
+       << Extreme(master.in_train_forces().extremes(), &ForceExtremes::compression_n,
+                  &ForceExtremes::compression_time_s)
+       << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
+       << ",\n    \"initial_j\": " << Number(initial_energy_j_)
+       << ",\n    \"final_j\": " << Number(ledger_.Stored())
+       << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j) << ",\n    \"dissipated_j\": {";
+  const char* separator = "";
+  for (const auto& [element, energy] : ledger_.dissipated_j) {
+    json << separator << "\n      " << Quoted(element) << ": " << Number(energy);
+    separator = ",";
+  }
+  json << "\n    },\n    \"residual_j\": " << Number(ledger_.Residual(initial_energy_j_))
+       << "\n  },\n  \"state_digest\": \"" << digest << "\"\n}\n";
+  return json.str();
+}
+
+}  // namespace train_dynamics

@@ -1,0 +1,65 @@
+#include "train_dynamics/train/thread_team.h"
+
+namespace train_dynamics {
+namespace {
+
+constexpr int kSpins = 4000;  // some microseconds; an exchange of a full train takes tens
+
+template <class Condition>
+bool Spin(const Condition& done) {
+  for (int i = 0; i < kSpins; ++i) {
+    if (done()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ThreadTeam::ThreadTeam(int size) {
+  for (int member = 1; member < size; ++member) threads_.emplace_back(&ThreadTeam::Work, this, member);
+}
+
+ThreadTeam::~ThreadTeam() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+    ++round_;
+  }
+  start_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadTeam::Run(const std::function<void(int)>& task) {
+  if (!threads_.empty()) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    task_ = &task;
+    unfinished_ = static_cast<int>(threads_.size());
+    ++round_;
+    start_.notify_all();
+  }
+  task(0);
+  const auto finished = [this] { return unfinished_ == 0; };
+  if (Spin(finished)) return;
+  std::unique_lock<std::mutex> lock(mutex_);
+  finish_.wait(lock, finished);
+}
+
+void ThreadTeam::Work(int member) {
+  unsigned seen = 0;
+  while (true) {
+    const auto called = [this, seen] { return round_ != seen; };
+    if (!Spin(called)) {
+      std::unique_lock<std::mutex> lock(mutex_);
+      start_.wait(lock, called);
+    }
+    ++seen;
+    if (ending_) return;
+    (*task_)(member);
+    if (--unfinished_ == 0) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      finish_.notify_one();
+    }
+  }
+}
+
+}  // namespace train_dynamics

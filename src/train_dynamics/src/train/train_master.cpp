@@ -1,0 +1,101 @@
+#include "train_dynamics/train/train_master.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace train_dynamics {
+namespace {
+
+/// Indices of the vehicles recorded in full detail, ascending, each once; none in an LTD model.
+std::vector<int> DetailedVehicles(const ScenarioParams& scenario, int vehicles) {
+  std::vector<int> detailed;
+  if (scenario.model != VehicleModel::kTwoD) return detailed;
+  for (int number : scenario.detail_vehicles) detailed.push_back(VehicleIndex(number, vehicles));
+  std::sort(detailed.begin(), detailed.end());
+  detailed.erase(std::unique(detailed.begin(), detailed.end()), detailed.end());
+  return detailed;
+}
+
+}  // namespace
+
+PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
+  const auto brake = std::make_shared<const AirBrake>(scenario.brake, scenario.commands, consist.centre_m);
+  return
+      [brake](double time_s, std::vector<double>& pressure_pa) { brake->PressuresAt(time_s, pressure_pa); };
+}
+
+TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
+                         PressureSource pressures)
+    : scenario_(scenario),
+      transport_(transport),
+      pressures_(std::move(pressures)),
+      forces_(consist, scenario.initial_slack,
+              scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
+      reply_(consist.vehicles(), DetailedVehicles(scenario, consist.vehicles())),
+      acceleration_mps2_(consist.vehicles(), std::numeric_limits<double>::quiet_NaN()) {
+  request_.dt_s = scenario.dt_s;
+  request_.steps = scenario.StepsPerExchange();
+  request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
+  request_.cylinder_pressure_pa.assign(consist.vehicles(), 0.0);
+}
+
+void TrainMaster::Start() {
+  transport_.Start(reply_);
+  forces_.Begin(reply_.head_displacement_m);
+  request_.ledger = true;
+  ShowRecord();
+}
+
+void TrainMaster::Exchange() {
+  const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
+  forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
+  pressures_(middle_s, request_.cylinder_pressure_pa);
+
+  const std::uint64_t next = exchange_ + 1;
+  request_.exchange = exchange_;
+  request_.record = next % scenario_.ExchangesPerRecord() == 0;
+  const std::uint64_t next_record = next / scenario_.ExchangesPerRecord();
+  const bool last = static_cast<long>(next) == scenario_.Exchanges();
+  request_.ledger = request_.record && (last || next_record % scenario_.RecordsPerLedger() == 0);
+  transport_.Exchange(request_, reply_);
+
+  exchange_ = next;
+  if (reply_.fault.vehicle >= 0) {
+    throw SimulationFault("vehicle " + std::to_string(reply_.fault.vehicle + 1) + ": " + reply_.fault.what +
+                          " at t = " + std::to_string(time_s()) + " s");
+  }
+  forces_.CloseInterval(reply_.head_displacement_m);
+  if (request_.record) ShowRecord();
+}
+
+void TrainMaster::ShowRecord() {
+  if (!last_speed_mps_.empty()) {
+    for (size_t i = 0; i < last_speed_mps_.size(); ++i) {
+      acceleration_mps2_[i] = (reply_.speed_mps[i] - last_speed_mps_[i]) / scenario_.record_interval_s;
+    }
+  }
+  last_speed_mps_ = reply_.speed_mps;
+
+  Digest digest;
+  digest.Add(digest_);
+  for (std::uint64_t vehicle : reply_.state_digest) digest.Add(vehicle);
+  for (const StickState<double>& stick : forces_.stick_states()) digest.Add(stick.force);
+  digest_ = digest.value();
+
+  EnergyLedger ledger;
+  if (request_.ledger) ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
+  const TrainRecord record{time_s(),
+                           exchange_,
+                           reply_,
+                           acceleration_mps2_,
+                           request_.coupler_force_n,
+                           forces_.extension_m(),
+                           request_.cylinder_pressure_pa,
+                           digest_,
+                           request_.ledger ? &ledger : nullptr};
+  for (const Observer& observer : observers_) observer(record);
+}
+
+}  // namespace train_dynamics

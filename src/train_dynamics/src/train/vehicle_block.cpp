@@ -1,0 +1,234 @@
+#include "train_dynamics/train/vehicle_block.h"
+
+#include <cmath>
+#include <limits>
+
+#include "train_dynamics/vehicle/wagon_step.h"
+
+namespace train_dynamics {
+namespace {
+
+// A vehicle beyond these has left every law's domain.
+constexpr double kAbsurdSpeed = 300.0;      // [m/s], of any body
+constexpr double kAbsurdMovement = 1.0;     // [m], of any body, vertical
+constexpr double kAbsurdPitch = 0.5;        // [rad], of any body but a wheelset
+constexpr double kAbsurdRotation = 3000.0;  // [rad/s], of a wheelset
+
+std::string Describe(const char* what, double value, const char* unit) {
+  return std::string(what) + " is " + std::to_string(value) + " " + unit;
+}
+
+/// Vehicles of conventional longitudinal train dynamics.
+class LtdBlock : public VehicleBlock {
+ public:
+  LtdBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count)
+      : track_(scenario.track), integrator_(scenario.integrator), first_(first) {
+    for (const VehicleParams& type : consist.vehicle_types) {
+      types_.emplace_back(type, scenario.model == VehicleModel::kLtd);
+    }
+    for (int i = first; i < first + count; ++i) {
+      type_.push_back(consist.vehicle_type[i]);
+      LtdState<double> state;
+      state.origin_m = scenario.start_position_m + consist.centre_m[i];
+      state.v_mps = scenario.InitialSpeed();
+      states_.push_back(state);
+    }
+    shoe_force_n_.assign(count, 0.0);
+  }
+
+  bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
+    bool sound = true;
+    for (size_t i = 0; i < states_.size(); ++i) {
+      const LtdVehicle& type = types_[type_[i]];
+      VehicleLoads<double> loads;
+      loads.front_coupler_n = request.coupler_force_n[offset + i];
+      loads.rear_coupler_n = request.coupler_force_n[offset + i + 1];
+      loads.cylinder_pressure_pa = request.cylinder_pressure_pa[offset + i];
+      LtdState<double>& s = states_[i];
+      for (int step = 0; step < request.steps; ++step)
+        StepLtd(type, track_, integrator_, loads, request.dt_s, s);
+      reply.head_displacement_m[offset + i] = s.x_m;
+      reply.head_velocity_mps[offset + i] = s.v_mps;
+      sound = sound & IsSound(s);
+      if (request.record)
+        shoe_force_n_[i] = ShoeForce(type.brake_rigging, loads.cylinder_pressure_pa, s.v_mps);
+    }
+    if (request.record) Report(offset, request.ledger, reply);
+    return sound;
+  }
+
+  void Report(int offset, bool with_energy, ExchangeReply& reply) const override {
+    for (size_t i = 0; i < states_.size(); ++i) {
+      const LtdState<double>& s = states_[i];
+      const size_t at = offset + i;
+      reply.head_displacement_m[at] = s.x_m;
+      reply.head_velocity_mps[at] = s.v_mps;
+      reply.position_m[at] = s.origin_m + s.x_m;
+      reply.speed_mps[at] = s.v_mps;
+      reply.shoe_force_n[at] = shoe_force_n_[i];
+      reply.wheel_force_n[at] = shoe_force_n_[i];
+      reply.creepage[at] = std::numeric_limits<double>::quiet_NaN();
+      Digest digest;
+      digest.Add(s.x_m);
+      digest.Add(s.v_mps);
+      reply.state_digest[at] = digest.value();
+      if (with_energy) reply.energy[at] = {KineticEnergy(types_[type_[i]], s), 0.0, s.work};
+    }
+  }
+
+  VehicleFault FindFault() const override {
+    for (size_t i = 0; i < states_.size(); ++i) {
+      if (!IsSound(states_[i]))
+        return {first_ + static_cast<int>(i), Describe("speed", states_[i].v_mps, "m/s")};
+    }
+    return {};
+  }
+
+ private:
+  static bool IsSound(const LtdState<double>& s) { return std::abs(s.v_mps) < kAbsurdSpeed; }
+
+  TrackParams track_;
+  LtdIntegrator integrator_;
+  int first_;
+  std::vector<LtdVehicle> types_;
+  std::vector<int> type_;
+  std::vector<LtdState<double>> states_;
+  std::vector<double> shoe_force_n_;
+};
+
+/// Wagons of the 2D train.
+class WagonBlock : public VehicleBlock {
+ public:
+  WagonBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count)
+      : track_(scenario.track), first_(first) {
+    for (const VehicleParams& type : consist.vehicle_types) types_.emplace_back(type);
+    for (int i = first; i < first + count; ++i) {
+      type_.push_back(consist.vehicle_type[i]);
+      states_.push_back(StaticEquilibrium(
+          types_[type_.back()], scenario.start_position_m + consist.centre_m[i], scenario.InitialSpeed()));
+    }
+    outputs_.resize(count);
+  }
+
+  bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
+    bool sound = true;
+    for (size_t i = 0; i < states_.size(); ++i) {
+      const Wagon& type = types_[type_[i]];
+      VehicleLoads<double> loads;
+      loads.front_coupler_n = request.coupler_force_n[offset + i];
+      loads.rear_coupler_n = request.coupler_force_n[offset + i + 1];
+      loads.cylinder_pressure_pa = request.cylinder_pressure_pa[offset + i];
+      WagonState<double>& s = states_[i];
+      for (int step = 0; step < request.steps; ++step) {
+        const bool shown = request.record && step + 1 == request.steps;
+        StepWagon(type, track_, loads, request.dt_s, s, shown ? &outputs_[i] : nullptr);
+      }
+      reply.head_displacement_m[offset + i] = CouplerHead(type, s.position);
+      reply.head_velocity_mps[offset + i] = CouplerHead(type, s.velocity);
+      sound = sound & IsSound(s);
+    }
+    if (request.record) Report(offset, request.ledger, reply);
+    return sound;
+  }
+
+  void Report(int offset, bool with_energy, ExchangeReply& reply) const override {
+    for (size_t i = 0; i < states_.size(); ++i) {
+      const Wagon& type = types_[type_[i]];
+      const WagonState<double>& s = states_[i];
+      const WagonOutput<double>& out = outputs_[i];
+      const size_t at = offset + i;
+      reply.head_displacement_m[at] = CouplerHead(type, s.position);
+      reply.head_velocity_mps[at] = CouplerHead(type, s.velocity);
+      reply.position_m[at] = s.origin_m + s.position.x[kCarbody];
+      reply.speed_mps[at] = s.velocity.x[kCarbody];
+      double shoes = 0.0, wheels = 0.0, creepage = 0.0;
+      for (int wheelset = 0; wheelset < kWheelsets; ++wheelset) {
+        shoes += out.shoe_force_n[wheelset];
+        wheels += out.creep_force_n[wheelset];
+        if (std::abs(out.creepage[wheelset]) > std::abs(creepage)) creepage = out.creepage[wheelset];
+      }
+      reply.shoe_force_n[at] = shoes;
+      reply.wheel_force_n[at] = wheels;
+      reply.creepage[at] = creepage;
+      reply.state_digest[at] = DigestOf(s);
+      if (with_energy) reply.energy[at] = {KineticEnergy(type, s), PotentialEnergy(type, track_, s), s.work};
+    }
+    for (WagonDetail& detail : reply.details) {
+      const size_t i = detail.vehicle - first_;
+      if (detail.vehicle < first_ || i >= states_.size()) continue;
+      detail.position = states_[i].position;
+      detail.velocity = states_[i].velocity;
+      detail.output = outputs_[i];
+      detail.nest_compression_m = ElementsOf(types_[type_[i]], states_[i].position).nest;
+    }
+  }
+
+  VehicleFault FindFault() const override {
+    for (size_t i = 0; i < states_.size(); ++i) {
+      if (!IsSound(states_[i])) return {first_ + static_cast<int>(i), FaultOf(states_[i])};
+    }
+    return {};
+  }
+
+ private:
+  static bool IsSound(const WagonState<double>& s) {
+    bool sound = true;
+    for (int b = 0; b < kBodies; ++b) {
+      sound = sound & (std::abs(s.velocity.x[b]) < kAbsurdSpeed) &
+              (std::abs(s.velocity.z[b]) < kAbsurdSpeed) & (std::abs(s.position.z[b]) < kAbsurdMovement);
+      sound = sound & (b < kWheelset1 ? std::abs(s.position.pitch[b]) < kAbsurdPitch
+                                      : std::abs(s.velocity.pitch[b]) < kAbsurdRotation);
+    }
+    return sound;
+  }
+
+  /// Names the first body that is not where a body can be.
+  static std::string FaultOf(const WagonState<double>& s) {
+    for (int b = 0; b < kBodies; ++b) {
+      const auto describe = [b](const char* what, double value, const char* unit) {
+        return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
+      };
+      const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
+      if (wrong(s.velocity.x[b], kAbsurdSpeed)) return describe("speed", s.velocity.x[b], "m/s");
+      if (wrong(s.velocity.z[b], kAbsurdSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
+      if (wrong(s.position.z[b], kAbsurdMovement))
+        return describe("vertical displacement", s.position.z[b], "m");
+      if (b < kWheelset1 && wrong(s.position.pitch[b], kAbsurdPitch))
+        return describe("pitch", s.position.pitch[b], "rad");
+      if (b >= kWheelset1 && wrong(s.velocity.pitch[b], kAbsurdRotation)) {
+        return describe("rotation", s.velocity.pitch[b], "rad/s");
+      }
+    }
+    return "state";
+  }
+
+  static std::uint64_t DigestOf(const WagonState<double>& s) {
+    Digest digest;
+    for (const BodyVector<double>* motion : {&s.position, &s.velocity}) {
+      for (int b = 0; b < kBodies; ++b) {
+        digest.Add(motion->x[b]);
+        digest.Add(motion->z[b]);
+        digest.Add(motion->pitch[b]);
+      }
+    }
+    return digest.value();
+  }
+
+  TrackParams track_;
+  int first_;
+  std::vector<Wagon> types_;
+  std::vector<int> type_;
+  std::vector<WagonState<double>> states_;
+  std::vector<WagonOutput<double>> outputs_;
+};
+
+}  // namespace
+
+std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
+                                               int first, int count) {
+  if (scenario.model == VehicleModel::kTwoD)
+    return std::make_unique<WagonBlock>(scenario, consist, first, count);
+  return std::make_unique<LtdBlock>(scenario, consist, first, count);
+}
+
+}  // namespace train_dynamics
