@@ -1,0 +1,30 @@
+#pragma once
+
+#include <train_brake_msgs/BrakePressures.h>
+#include <train_brake_msgs/EnergyLedger.h>
+#include <train_brake_msgs/InTrainForces.h>
+#include <train_brake_msgs/TrainState.h>
+#include <train_brake_msgs/WagonState.h>
+
+#include <string>
+
+#include "train_dynamics/train/train_master.h"
+
+/// From records of the physics to messages. A message keeps its memory from record to record.
+namespace ltd_master {
+
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainState& message);
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::InTrainForces& message);
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::BrakePressures& message);
+
+/// @param initial_j  energy of the train at time 0 [J]
+void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::EnergyLedger& ledger,
+             double initial_j, train_brake_msgs::EnergyLedger& message);
+
+void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
+             train_brake_msgs::WagonState& message);
+
+/// "wagon_007" for the vehicle of index 6 in a train of up to 999; wider in longer trains.
+std::string VehicleName(int vehicle, int vehicles);
+
+}  // namespace ltd_master

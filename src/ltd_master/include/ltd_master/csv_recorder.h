@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "train_dynamics/train/train_master.h"
+
+namespace ltd_master {
+
+/// Writes a run as CSV tables into a folder; units stand in the headers.
+///
+///   train_history.csv  mean, lead and tail speed, largest forces, mean pressure
+///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
+///   wagon_NNN.csv      one per detailed vehicle
+///   couplers.csv       largest forces of every connection and when (at the end)
+///   vehicles.csv       end state of every vehicle (at the end)
+class CsvRecorder {
+ public:
+  explicit CsvRecorder(const std::filesystem::path& folder);
+
+  /// An observer of the run's TrainMaster.
+  void Record(const train_dynamics::TrainRecord& record);
+
+  /// Writes the tables of the end. @throws std::runtime_error if anything could not be written
+  void Close(const train_dynamics::TrainMaster& master);
+
+ private:
+  void OpenWagon(int vehicle, int vehicles);
+
+  std::filesystem::path folder_;
+  std::ofstream history_, pressures_;
+  std::map<int, std::ofstream> wagons_;
+  std::vector<double> position_m_, speed_mps_;  ///< at the last record
+};
+
+}  // namespace ltd_master

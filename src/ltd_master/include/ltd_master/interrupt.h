@@ -1,0 +1,11 @@
+#pragma once
+
+namespace ltd_master {
+
+/// Makes Ctrl-C and SIGTERM ask for a clean end, once; a second one ends the process as usual.
+void CatchInterrupts();
+
+/// The signal that asked for an end, 0 as long as none has.
+int Interrupt();
+
+}  // namespace ltd_master

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+
+namespace ltd_master {
+
+/// Tells how far a run has come: a line that renews itself on a terminal, a few quiet lines elsewhere. Writes
+/// to stderr.
+class Progress {
+ public:
+  explicit Progress(double duration_s);
+  ~Progress();
+
+  /// Cheap enough for every record.
+  void Show(double simulated_s, double mean_speed_mps);
+
+  double WallSeconds() const;
+
+ private:
+  void Print(double simulated_s, double mean_speed_mps, double wall_s);
+
+  using Clock = std::chrono::steady_clock;
+  double duration_s_;
+  bool on_terminal_;
+  bool line_open_ = false;
+  double next_s_ = 0.0;  ///< terminal: wall time, else simulated time, of the next line
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace ltd_master

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ltd_master {
+
+/// How a command of train_sim ends.
+enum ExitCode {
+  kSuccess = 0,
+  kFailure = 1,   ///< a file could not be written, ...
+  kBadInput = 2,  ///< arguments or configuration
+  kSimulationFault = 3,
+  kInterrupted = 130  ///< Ctrl-C; what was simulated is saved and marked incomplete
+};
+
+struct RunOptions {
+  std::string scenario;
+  std::string model;  ///< empty: the scenario's
+  std::string out;    ///< empty: nothing is written
+  std::vector<std::string> overrides;
+  int threads = 1;
+  bool csv = false;
+};
+
+/// Simulates a scenario with all vehicles in this process.
+/// @throws train_dynamics::config::Error, std::exception
+int RunScenario(const RunOptions& options);
+
+/// Checks a scenario and prints what it is.
+int CheckScenario(const RunOptions& options);
+
+}  // namespace ltd_master

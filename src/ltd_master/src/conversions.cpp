@@ -1,0 +1,102 @@
+#include "ltd_master/conversions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ltd_master {
+namespace {
+
+using train_dynamics::TrainRecord;
+
+template <class Message>
+void Stamp(const TrainRecord& record, Message& message) {
+  message.header.stamp.fromSec(record.time_s);
+  message.exchange = record.exchange;
+}
+
+template <class From, class To>
+void Copy(const From& from, To& to) {
+  to.resize(from.size());
+  std::transform(from.begin(), from.end(), to.begin(),
+                 [](auto value) { return static_cast<typename To::value_type>(value); });
+}
+
+template <class From, class To>
+void CopyFixed(const From& from, To& to) {
+  std::transform(from.begin(), from.end(), to.begin(),
+                 [](auto value) { return static_cast<typename To::value_type>(value); });
+}
+
+}  // namespace
+
+void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
+  Stamp(record, message);
+  message.position_m = record.vehicles.position_m;
+  message.speed_mps = record.vehicles.speed_mps;
+  Copy(record.acceleration_mps2, message.acceleration_mps2);
+  Copy(record.vehicles.shoe_force_n, message.shoe_force_n);
+  Copy(record.vehicles.wheel_force_n, message.wheel_force_n);
+  Copy(record.vehicles.creepage, message.creepage);
+  message.state_digest = record.state_digest;
+}
+
+void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) {
+  Stamp(record, message);
+  const size_t connections = record.coupler_extension_m.size();
+  message.coupler_force_n.resize(connections);
+  for (size_t c = 0; c < connections; ++c) {
+    message.coupler_force_n[c] = static_cast<float>(record.coupler_force_n[c + 1]);
+  }
+  Copy(record.coupler_extension_m, message.coupler_deflection_m);
+}
+
+void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
+  Stamp(record, message);
+  Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
+}
+
+void Convert(const TrainRecord& record, const train_dynamics::EnergyLedger& ledger, double initial_j,
+             train_brake_msgs::EnergyLedger& message) {
+  Stamp(record, message);
+  message.element.clear();
+  message.dissipated_j.clear();
+  for (const auto& [element, energy] : ledger.dissipated_j) {
+    message.element.push_back(element);
+    message.dissipated_j.push_back(energy);
+  }
+  message.initial_j = initial_j;
+  message.kinetic_j = ledger.kinetic_j;
+  message.potential_j = ledger.potential_j;
+  message.gravity_work_j = ledger.gravity_work_j;
+  message.traction_work_j = ledger.traction_work_j;
+  message.residual_j = ledger.Residual(initial_j);
+}
+
+void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detail,
+             train_brake_msgs::WagonState& message) {
+  Stamp(record, message);
+  message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
+  CopyFixed(detail.position.x, message.body_x_m);
+  CopyFixed(detail.position.z, message.body_z_m);
+  CopyFixed(detail.position.pitch, message.body_pitch_rad);
+  CopyFixed(detail.velocity.x, message.body_x_mps);
+  CopyFixed(detail.velocity.z, message.body_z_mps);
+  CopyFixed(detail.velocity.pitch, message.body_pitch_radps);
+  CopyFixed(detail.output.normal_force_n, message.wheel_normal_force_n);
+  CopyFixed(detail.output.creepage, message.creepage);
+  CopyFixed(detail.output.creep_force_n, message.creep_force_n);
+  CopyFixed(detail.output.shoe_force_n, message.shoe_force_n);
+  CopyFixed(detail.nest_compression_m, message.spring_deflection_m);
+  CopyFixed(detail.output.wedge_friction_n, message.wedge_force_n);
+  message.front_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle]);
+  message.rear_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle + 1]);
+  message.cylinder_pressure_pa = static_cast<float>(record.cylinder_pressure_pa[detail.vehicle]);
+}
+
+std::string VehicleName(int vehicle, int vehicles) {
+  const int width = std::max(3, static_cast<int>(std::to_string(vehicles).size()));
+  return fmt::format("wagon_{:0{}d}", vehicle + 1, width);
+}
+
+}  // namespace ltd_master

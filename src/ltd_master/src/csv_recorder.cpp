@@ -1,0 +1,126 @@
+#include "ltd_master/csv_recorder.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "ltd_master/conversions.h"
+
+namespace ltd_master {
+namespace {
+
+using train_dynamics::TrainRecord;
+using train_dynamics::WagonDetail;
+
+std::ofstream Open(const std::filesystem::path& file) {
+  std::ofstream stream(file);
+  if (!stream) throw std::runtime_error("cannot write " + file.string());
+  return stream;
+}
+
+void Check(std::ofstream& stream, const std::filesystem::path& file) {
+  stream.flush();
+  if (!stream) throw std::runtime_error("could not write all of " + file.string() + ": is the disk full?");
+}
+
+template <class Values>
+void Row(std::ofstream& stream, const Values& values) {
+  for (double value : values) fmt::print(stream, ",{:.9g}", value);
+}
+
+}  // namespace
+
+CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
+    : folder_(folder),
+      history_(Open(folder / "train_history.csv")),
+      pressures_(Open(folder / "pressures.csv")) {
+  fmt::print(
+      history_,
+      "time_s,mean_speed_kmh,lead_speed_kmh,tail_speed_kmh,mean_position_m,max_tension_n,max_compression_n,"
+      "mean_cylinder_pressure_pa\n");
+}
+
+void CsvRecorder::Record(const TrainRecord& record) {
+  const std::vector<double>& speed = record.vehicles.speed_mps;
+  const std::vector<double>& force = record.coupler_force_n;
+  const auto mean = [](const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+  };
+  fmt::print(history_, "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", record.time_s,
+             3.6 * mean(speed), 3.6 * speed.front(), 3.6 * speed.back(), mean(record.vehicles.position_m),
+             *std::max_element(force.begin(), force.end()), *std::min_element(force.begin(), force.end()),
+             mean(record.cylinder_pressure_pa));
+
+  if (record.exchange == 0) {
+    fmt::print(pressures_, "time_s");
+    for (size_t i = 1; i <= speed.size(); ++i) fmt::print(pressures_, ",vehicle_{}_pa", i);
+    pressures_ << '\n';
+  }
+  fmt::print(pressures_, "{:.6f}", record.time_s);
+  Row(pressures_, record.cylinder_pressure_pa);
+  pressures_ << '\n';
+
+  for (const WagonDetail& detail : record.vehicles.details) {
+    if (record.exchange == 0) OpenWagon(detail.vehicle, static_cast<int>(speed.size()));
+    std::ofstream& wagon = wagons_.at(detail.vehicle);
+    fmt::print(wagon, "{:.6f},{:.9g}", record.time_s, speed[detail.vehicle]);
+    Row(wagon, detail.output.normal_force_n);
+    Row(wagon, detail.output.creepage);
+    Row(wagon, detail.output.creep_force_n);
+    Row(wagon, detail.output.shoe_force_n);
+    Row(wagon, std::vector<double>(detail.position.pitch.begin(),
+                                   detail.position.pitch.begin() + train_dynamics::kWheelset1));
+    Row(wagon, detail.nest_compression_m);
+    Row(wagon, detail.output.wedge_friction_n);
+    fmt::print(wagon, ",{:.9g},{:.9g},{:.9g}\n", force[detail.vehicle], force[detail.vehicle + 1],
+               record.cylinder_pressure_pa[detail.vehicle]);
+  }
+  position_m_ = record.vehicles.position_m;
+  speed_mps_ = speed;
+}
+
+void CsvRecorder::OpenWagon(int vehicle, int vehicles) {
+  std::ofstream wagon = Open(folder_ / (VehicleName(vehicle, vehicles) + ".csv"));
+  fmt::print(wagon, "time_s,speed_mps");
+  for (const char* quantity : {"normal_force_{}_n", "creepage_{}", "creep_force_{}_n", "shoe_force_{}_n"}) {
+    for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {
+      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), fmt::format("wheelset_{}", i)));
+    }
+  }
+  for (const char* body : {"carbody", "front_bolster", "rear_bolster", "front_frame", "rear_frame"}) {
+    fmt::print(wagon, ",{}_pitch_rad", body);
+  }
+  for (const char* quantity : {"spring_deflection_{}_m", "wedge_friction_{}_n"}) {
+    for (const char* quarter : {"front_front", "front_rear", "rear_front", "rear_rear"}) {
+      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), quarter));
+    }
+  }
+  fmt::print(wagon, ",front_coupler_force_n,rear_coupler_force_n,cylinder_pressure_pa\n");
+  wagons_.emplace(vehicle, std::move(wagon));
+}
+
+void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
+  std::ofstream couplers = Open(folder_ / "couplers.csv");
+  fmt::print(couplers,
+             "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n");
+  int number = 1;
+  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().extremes()) {
+    fmt::print(couplers, "{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
+               extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
+  }
+  std::ofstream vehicles = Open(folder_ / "vehicles.csv");
+  fmt::print(vehicles, "vehicle,position_m,speed_mps\n");
+  for (size_t i = 0; i < speed_mps_.size(); ++i) {
+    fmt::print(vehicles, "{},{:.12g},{:.9g}\n", i + 1, position_m_[i], speed_mps_[i]);
+  }
+  Check(couplers, folder_ / "couplers.csv");
+  Check(vehicles, folder_ / "vehicles.csv");
+  Check(history_, folder_ / "train_history.csv");
+  Check(pressures_, folder_ / "pressures.csv");
+  for (auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
+}
+
+}  // namespace ltd_master

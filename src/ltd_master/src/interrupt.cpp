@@ -1,0 +1,24 @@
+#include "ltd_master/interrupt.h"
+
+#include <csignal>
+
+namespace ltd_master {
+namespace {
+
+volatile std::sig_atomic_t g_signal = 0;
+
+void Remember(int signal) { g_signal = signal; }
+
+}  // namespace
+
+void CatchInterrupts() {
+  struct sigaction action {};
+  action.sa_handler = Remember;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int Interrupt() { return g_signal; }
+
+}  // namespace ltd_master

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <thread>
+
+#include "ltd_master/run_command.h"
+#include "ltd_master/vehicle_commands.h"
+#include "train_dynamics/config/error_list.h"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Simulates the braking of long trains, all vehicles in this process, without a ROS master.\n"
+    "\n"
+    "  train_sim run config/scenarios/emergency.yaml --out results/emergency\n"
+    "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
+    "  train_sim check my_scenario.yaml\n"
+    "  train_sim modes config/vehicles/ore_wagon.yaml\n"
+    "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
+    "\n"
+    "Exit codes: 0 done; 1 a result could not be written; 2 bad arguments or configuration; 3 the simulation "
+    "broke\n"
+    "down; 130 interrupted (what was simulated is saved and marked incomplete).";
+
+/// Options shared by the commands that read a file and change it.
+void AddInput(CLI::App* command, const char* name, const char* help, std::string& file,
+              std::vector<std::string>& overrides) {
+  command->add_option(name, file, help)->required();
+  command
+      ->add_option("--set", overrides,
+                   "replace a value: --set path=value, e.g. train.connection.draft_gear.slack_m=0.02")
+      ->allow_extra_args(false);
+}
+
+int Main(int argc, char** argv) {
+  ltd_master::RunOptions options;
+  options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::string vehicle;
+  bool adhesion_csv = false;
+  std::function<int()> command;
+
+  CLI::App app(kDescription, "train_sim");
+  app.set_version_flag("--version", "train_sim " TRAIN_BRAKE_VERSION);
+  app.require_subcommand(1);
+
+  CLI::App* run = app.add_subcommand("run", "simulate a scenario; the summary goes to the standard output");
+  AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides);
+  run->add_option("--model", options.model, "vehicle model; default: the scenario's")
+      ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
+  run->add_option("--out", options.out,
+                  "folder for train.bag, config.yaml and summary.json; default: write nothing");
+  run->add_option("--threads", options.threads, "threads; any number gives the same bits")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  run->add_flag("--csv", options.csv,
+                "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
+  run->callback([&] {
+    if (options.csv && options.out.empty())
+      throw CLI::ValidationError("--csv", "needs --out DIR to write into");
+    command = [&] { return ltd_master::RunScenario(options); };
+  });
+
+  CLI::App* check = app.add_subcommand("check", "check a scenario with all its parts and print what it is");
+  AddInput(check, "SCENARIO", "scenario file", options.scenario, options.overrides);
+  check->callback([&] { command = [&] { return ltd_master::CheckScenario(options); }; });
+
+  CLI::App* modes =
+      app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
+  AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
+  modes->callback([&] { command = [&] { return ltd_master::PrintModes(vehicle, options.overrides); }; });
+
+  CLI::App* adhesion =
+      app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");
+  AddInput(adhesion, "VEHICLE", "vehicle file", vehicle, options.overrides);
+  adhesion->add_flag("--csv", adhesion_csv, "comma-separated");
+  adhesion->callback(
+      [&] { command = [&] { return ltd_master::PrintAdhesion(vehicle, options.overrides, adhesion_csv); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? ltd_master::kSuccess : ltd_master::kBadInput;
+  }
+  return command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Main(argc, argv);
+  } catch (const train_dynamics::config::Error& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return ltd_master::kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "train_sim: {}\n", e.what());
+    return ltd_master::kFailure;
+  }
+}

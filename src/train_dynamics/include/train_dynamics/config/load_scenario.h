@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/train/scenario.h"
+#include "train_dynamics/train/train_master.h"
+
+namespace train_dynamics::config {
+
+/// A scenario that is ready to run.
+struct LoadedScenario {
+  ScenarioParams params;
+  Consist consist;
+  PressureSource pressures;
+};
+
+/// Reads a scenario with all of its parts, and its pressure table if it names one.
+///
+/// A relative path of the pressure table counts from the scenario file's folder. The table is CSV with the
+/// columns time_s, vehicle_1_pa, vehicle_2_pa, ... , one for each vehicle of the train. Parts are looked for
+/// around the file, then in the folders of the environment variable TRAIN_BRAKE_CONFIG.
+///
+/// @param overrides  "path=value", as given to --set
+/// @throws Error with everything that is wrong, as file:line: key ...
+LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides);
+
+/// Reads a vehicle file likewise.
+VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides);
+
+}  // namespace train_dynamics::config
