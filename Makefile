@@ -43,6 +43,10 @@ build: deps ## build everything (Release) into build/ and devel/
 run: build ## run config/scenarios/$(SCENARIO).yaml into $(OUT)
 	@devel/lib/ltd_master/train_sim run config/scenarios/$(SCENARIO).yaml --model $(MODEL) --out $(OUT)
 
+.PHONY: paper
+paper: build ## all three scenarios of the paper x three models; prints its Table 1 and Figure 10 beside ours
+	@tools/paper.py devel/lib/ltd_master/train_sim results/paper
+
 .PHONY: test
 test: check-deps build ## build and run all tests
 	@$(release) tests $(quietly)

@@ -147,19 +147,19 @@ class ConfigTest : public ::testing::Test {
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "config_test_XXXXXX").string();
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = fs::canonical(pattern);
+    root = fs::canonical(pattern);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(root); }
 
   std::string Put(const std::string& name, const std::string& text) {
-    const fs::path file = folder_ / name;
+    const fs::path file = root / name;
     fs::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << text;
     return file.string();
   }
 
   std::string WithoutFolder(std::string text) const {
-    const std::string prefix = folder_.string() + "/";
+    const std::string prefix = root.string() + "/";
     for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;)
       text.erase(at, prefix.size());
     return text;
@@ -167,8 +167,8 @@ class ConfigTest : public ::testing::Test {
 
   template <class Struct>
   Struct LoadFile(const std::string& name, LoadOptions options = {}) {
-    errors_ = ErrorList();
-    return Load<Struct>((folder_ / name).string(), options, errors_);
+    found = ErrorList();
+    return Load<Struct>((root / name).string(), options, found);
   }
 
   /// The errors of reading `text` as a struct.
@@ -192,10 +192,10 @@ class ConfigTest : public ::testing::Test {
     return value;
   }
 
-  std::string Errors() const { return WithoutFolder(errors_.Text()); }
+  std::string Errors() const { return WithoutFolder(found.Text()); }
 
-  fs::path folder_;
-  ErrorList errors_;
+  fs::path root;
+  ErrorList found;
 };
 
 // ---------------------------------------------------------------- numbers
@@ -252,7 +252,8 @@ TEST(Number, ShortestDecimalReadsBackToTheSameBits) {
     if (!std::isfinite(value)) continue;
     const std::optional<double> back = ParseNumber(ShortestDecimal(value));
     ASSERT_TRUE(back) << ShortestDecimal(value);
-    EXPECT_EQ(std::memcmp(&*back, &value, sizeof value), 0) << ShortestDecimal(value);
+    EXPECT_EQ(*back, value) << ShortestDecimal(value);
+    EXPECT_EQ(std::signbit(*back), std::signbit(value)) << ShortestDecimal(value);
   }
 }
 
@@ -410,7 +411,7 @@ TEST_F(ConfigTest, ManyErrorsAreCutShort) {
   for (int i = 0; i < 62; ++i) text += "  - x\n";
   const std::string errors = ErrorsOf(text);
   EXPECT_EQ(errors.substr(errors.rfind('\n')), "\nand 12 more");
-  EXPECT_EQ(errors_.size(), 62u);
+  EXPECT_EQ(found.size(), 62u);
 }
 
 TEST_F(ConfigTest, LoadThrowsAllErrors) {
@@ -469,10 +470,10 @@ TEST_F(ConfigTest, UnknownKeysOfAGroup) {
 TEST_F(ConfigTest, FilesThatCannotBeRead) {
   LoadFile<Scenario>("none.yaml");
   EXPECT_EQ(Errors(), "none.yaml: does not exist");
-  fs::create_directory(folder_ / "dir.yaml");
+  fs::create_directory(root / "dir.yaml");
   LoadFile<Scenario>("dir.yaml");
   EXPECT_EQ(Errors(), "dir.yaml: is a folder, not a file");
-  ASSERT_EQ(mkfifo((folder_ / "pipe.yaml").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((root / "pipe.yaml").c_str(), 0600), 0);
   LoadFile<Scenario>("pipe.yaml");
   EXPECT_EQ(Errors(), "pipe.yaml: is not a regular file");
   if (geteuid() != 0) {  // root may read everything
@@ -600,7 +601,7 @@ TEST_F(ConfigTest, PartsThatUnfoldWithoutBoundAreRefused) {
   LoadFile<Assembly>("assemblies/l3.yaml");
   EXPECT_NE(Errors().find("unfolds, through its references, to more values than are read"),
             std::string::npos);
-  EXPECT_LT(errors_.size(), 10u);
+  EXPECT_LT(found.size(), 10u);
 }
 
 TEST_F(ConfigTest, MutatedFilesNeverCrash) {
@@ -693,12 +694,12 @@ TEST_F(PartsTest, ByFileRelativeToTheReference) {
 }
 
 TEST_F(PartsTest, FromSearchRoots) {
-  fs::create_directories(folder_ / "home");
+  fs::create_directories(root / "home");
   Put("share/buffers/x.yaml", "");
   Put("share/couplers/h_type.yaml", "slack_m: 0.03\n");
   Put("home/s.yaml", "tail: h_type\n");
   LoadOptions options;
-  options.search_roots = {folder_ / "share"};
+  options.search_roots = {root / "share"};
   EXPECT_EQ(LoadFile<Scenario>("home/s.yaml", options).tail.value().slack_m, 0.03);
   EXPECT_EQ(Errors(), "");
 
@@ -712,7 +713,7 @@ TEST_F(PartsTest, UnknownReferences) {
   Put("share/couplers/h_type.yaml", "slack_m: 0.03\n");
   Put("scenarios/s.yaml", "tail: f_typ\nspare_couplers: [x/y.yaml, 'a b', '']\n");
   LoadOptions options;
-  options.search_roots = {folder_ / "share"};
+  options.search_roots = {root / "share"};
   LoadFile<Scenario>("scenarios/s.yaml", options);
   EXPECT_EQ(
       Errors(),
@@ -1027,8 +1028,8 @@ TEST(Validation, RulesBetweenFields) {
 class CsvTest : public ConfigTest {
  protected:
   CsvTable ReadTable(const std::string& text) {
-    errors_ = ErrorList();
-    return ReadCsvTable(Put("t.csv", text), errors_);
+    found = ErrorList();
+    return ReadCsvTable(Put("t.csv", text), found);
   }
   std::string ErrorsOfTable(const std::string& text) {
     ReadTable(text);
@@ -1044,8 +1045,8 @@ TEST_F(CsvTest, ReadsColumns) {
   EXPECT_EQ(table.values, (std::vector<std::vector<double>>{{0.0, 0.1}, {500.0, 450.0}}));
   EXPECT_EQ(table.row_lines, (std::vector<int>{4, 6}));
   EXPECT_EQ(table.header_line, 3);
-  EXPECT_EQ(table.Column("pressure_kpa", errors_), &table.values[1]);
-  EXPECT_EQ(table.Column("pressure_pa", errors_), nullptr);
+  EXPECT_EQ(table.Column("pressure_kpa", found), &table.values[1]);
+  EXPECT_EQ(table.Column("pressure_pa", found), nullptr);
   EXPECT_EQ(Errors(), "t.csv:3: has no column pressure_pa; the column is pressure_kpa, in kPa");
 }
 
@@ -1068,7 +1069,7 @@ TEST_F(CsvTest, ErrorsNameTheirLines) {
   EXPECT_EQ(ErrorsOfTable("a\n" + std::string(20000, ',')),
             "t.csv:2: has more than 10000 values, but the header names 1 columns");
   EXPECT_EQ(ErrorsOfTable(std::string("a\n\0", 3)), "t.csv:2: is not a text file (it contains a zero byte)");
-  ReadCsvTable((folder_ / "none.csv").string(), errors_ = ErrorList());
+  ReadCsvTable((root / "none.csv").string(), found = ErrorList());
   EXPECT_EQ(Errors(), "none.csv: does not exist");
 }
 

@@ -145,7 +145,7 @@ fs::path PartLibrary::Locate(const Node& reference, const KeyPath& key, const st
     return fs::path();
   };
   if (IsFileReference(reference.text)) {
-    const fs::path file = Normal(reference.source.document->folder / reference.text);
+    fs::path file = Normal(reference.source.document->folder / reference.text);
     if (Exists(file)) return file;
     return refuse("names the file " + Describe(reference) + ", but there is no " + DisplayPath(file));
   }
@@ -167,7 +167,7 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
   for (const fs::path& root : roots) {
     const fs::path folder = root / kind;
     if (!IsFolder(folder)) continue;
-    const fs::path file = folder / (reference.text + kExtension);
+    fs::path file = folder / (reference.text + kExtension);
     if (Exists(file)) return Normal(file);
     searched.push_back(DisplayPath(folder));
     for (const std::string& name : NamesIn(folder)) names.push_back(name);

@@ -92,11 +92,14 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
 
 std::string KeyHint(const std::string& written, const std::vector<std::string>& known,
                     const std::string& noun) {
-  const std::string stem = SplitUnit(Normal(written)).stem;
-  for (const std::string& word : known) {
-    const KeyUnit right = SplitUnit(word);
-    if (right.stem != stem || word == Normal(written)) continue;
-    return "; the " + noun + " is " + word + (right.unit.empty() ? ", without a unit" : ", in " + right.unit);
+  const std::string mine = Normal(written);
+  const std::string stem = SplitUnit(mine).stem;
+  const auto same = std::find_if(known.begin(), known.end(), [&](const std::string& word) {
+    return word != mine && SplitUnit(word).stem == stem;
+  });
+  if (same != known.end()) {
+    const std::string unit = SplitUnit(*same).unit;
+    return "; the " + noun + " is " + *same + (unit.empty() ? ", without a unit" : ", in " + unit);
   }
   const std::string nearest = Nearest(written, known);
   if (!nearest.empty()) return "; did you mean " + nearest + "?";
@@ -105,7 +108,10 @@ std::string KeyHint(const std::string& written, const std::vector<std::string>& 
 
 std::string Join(const std::vector<std::string>& words, std::size_t max) {
   std::string joined;
-  for (std::size_t i = 0; i < std::min(words.size(), max); ++i) joined += (i == 0 ? "" : ", ") + words[i];
+  for (std::size_t i = 0; i < std::min(words.size(), max); ++i) {
+    if (i > 0) joined += ", ";
+    joined += words[i];
+  }
   return words.size() > max ? joined + ", ..." : joined;
 }
 

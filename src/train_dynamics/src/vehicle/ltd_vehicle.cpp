@@ -1,5 +1,7 @@
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 
+#include "train_dynamics/validate.h"
+
 namespace train_dynamics {
 
 LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia)
@@ -7,6 +9,8 @@ LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia
       propulsion_resistance(params.propulsion_resistance),
       weight_n(params.Weight()),
       inertia_kg(params.TotalMass() +
-                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)) {}
+                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)) {
+  Validate(params);
+}
 
 }  // namespace train_dynamics

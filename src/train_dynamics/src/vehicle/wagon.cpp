@@ -6,6 +6,7 @@
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/contact/polach.h"
+#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -44,6 +45,7 @@ VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
 }  // namespace
 
 Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.friction_wedge) {
+  Validate(params);
   const VehicleParams& p = params;
   const auto set_body = [this](int i, double mass, double inertia) {
     mass_kg[i] = mass;

@@ -16,6 +16,7 @@ inline double EquivalentRotationalMass(const WheelsetParams& wheelset, int wheel
 
 /// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
 struct LtdVehicle {
+  /// @throws std::invalid_argument when the parameters violate their rules
   LtdVehicle(const VehicleParams& params, bool with_rotational_inertia);
 
   BrakeRiggingParams brake_rigging;

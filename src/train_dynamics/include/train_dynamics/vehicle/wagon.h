@@ -81,7 +81,7 @@ struct WagonOutput {
 
 /// What is constant in a wagon.
 struct Wagon {
-  /// @throws std::invalid_argument when the parameters violate their rules (Validate in parameters.h).
+  /// @throws std::invalid_argument when the parameters violate their rules
   explicit Wagon(const VehicleParams& params);
 
   VehicleParams params;

@@ -75,7 +75,7 @@ RollingResult<T> StepRolling(const RollingInertia& inertia, const CreepLaw<T>& l
 
   // Torque that would stop the wheels within this step, the creep force aside.
   const T stopping = in.spin * (1.0 / (dt * inertia.inv_inertia_per_kgm2)) + in.traction_torque;
-  T torque = CopySign(in.brake_torque, in.spin);
+  T torque = CopySign(in.brake_torque, stopping);
   MaskOf<T> locked = Abs(stopping) <= in.brake_torque + r * law.friction_limit;
   T h(h_turning);
   if (AnyOf(locked)) {  // may stop: find the torque that holds omega1 = 0 and see whether the brake has it
