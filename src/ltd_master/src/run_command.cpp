@@ -2,24 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <stdexcept>
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <vector>
 
-#include "ltd_master/bag_recorder.h"
-#include "ltd_master/csv_recorder.h"
 #include "ltd_master/interrupt.h"
 #include "ltd_master/progress.h"
+#include "ltd_master/run_output.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/run_summary.h"
 
 namespace ltd_master {
 namespace {
 
-namespace fs = std::filesystem;
 using train_dynamics::TrainRecord;
 using train_dynamics::config::LoadedScenario;
 
@@ -29,66 +26,25 @@ LoadedScenario Load(const RunOptions& options) {
   return train_dynamics::config::LoadScenario(options.scenario, overrides);
 }
 
-/// Writes a whole file or nothing.
-void WriteFile(const fs::path& file, const std::string& text) {
-  const fs::path unfinished = file.string() + ".unfinished";
-  std::ofstream stream(unfinished);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error("cannot write " + file.string());
-  fs::rename(unfinished, file);
-}
-
-/// The folder of a run's results, cleared of those of an earlier run.
-void PrepareFolder(const fs::path& folder) {
-  fs::create_directories(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool result = name == "train.bag" || name == "train.bag.active" || name == "summary.json" ||
-                        name == "config.yaml" || name == "pressure_table.csv" ||
-                        name == "train_history.csv" || name == "pressures.csv" || name == "couplers.csv" ||
-                        name == "vehicles.csv" ||
-                        (name.rfind("wagon_", 0) == 0 && entry.path().extension() == ".csv");
-    if (result) fs::remove(entry.path());
-  }
-}
-
-/// Everything that a repetition of the run needs, so that it gives the same bits.
-void WriteResolvedConfig(train_dynamics::ScenarioParams scenario, const fs::path& folder) {
-  if (!scenario.pressure_table.empty()) {
-    fs::copy_file(scenario.pressure_table, folder / "pressure_table.csv",
-                  fs::copy_options::overwrite_existing);
-    scenario.pressure_table = "pressure_table.csv";
-  }
-  WriteFile(folder / "config.yaml", train_dynamics::config::Write(scenario));
+/// As asked for; else one per core for the 2D model, and one for LTD, whose exchanges are shorter than a wake-up.
+int Threads(const RunOptions& options, const train_dynamics::ScenarioParams& scenario) {
+  if (options.threads > 0) return options.threads;
+  if (scenario.model != train_dynamics::VehicleModel::kTwoD) return 1;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace
 
 int RunScenario(const RunOptions& options) {
   const LoadedScenario scenario = Load(options);
-  const fs::path folder = options.out;
-  std::unique_ptr<BagRecorder> bag;
-  std::unique_ptr<CsvRecorder> csv;
-  if (!options.out.empty()) {
-    if (fs::exists(folder) && fs::exists(options.scenario) &&
-        fs::weakly_canonical(options.scenario).parent_path() == fs::weakly_canonical(folder)) {
-      throw std::runtime_error("--out " + options.out +
-                               " is the folder of the scenario file: choose another");
-    }
-    PrepareFolder(folder);
-    WriteResolvedConfig(scenario.params, folder);
-    bag = std::make_unique<BagRecorder>((folder / "train.bag").string());
-    if (options.csv) csv = std::make_unique<CsvRecorder>(folder);
-  }
+  RunOutput output({options.out, true, options.csv}, options.scenario, scenario.params);
 
-  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, options.threads);
+  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, Threads(options, scenario.params));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
   train_dynamics::RunSummary summary(scenario.params, scenario.consist);
   Progress progress(scenario.params.duration_s);
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
-  if (bag != nullptr) master.AddObserver([&](const TrainRecord& record) { bag->Record(record); });
-  if (csv != nullptr) master.AddObserver([&](const TrainRecord& record) { csv->Record(record); });
+  master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
   master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, summary.MeanSpeed()); });
 
   CatchInterrupts();
@@ -101,9 +57,7 @@ int RunScenario(const RunOptions& options) {
   }
 
   const std::string json = summary.Json(master, progress.WallSeconds(), fault);
-  if (bag != nullptr) bag->Close();
-  if (csv != nullptr) csv->Close(master);
-  if (!options.out.empty()) WriteFile(folder / "summary.json", json);
+  output.Finish(master, json);
   fmt::print("{}", json);
   if (!fault.empty()) {
     fmt::print(stderr, "train_sim: the simulation broke down: {}\n", fault);
@@ -137,7 +91,7 @@ int CheckScenario(const RunOptions& options) {
              consist.vehicles(), 1e-3 * mass, length, consist.connection_type.size() - draw_bars, draw_bars);
   fmt::print("  track      {}\n", p.track.name);
   fmt::print("  pressures  {}\n", p.pressure_table.empty()
-                                      ? fmt::format("{}, {} driver commands", p.brake.name, p.commands.size())
+                                      ? fmt::format("{}, {} driver commands", p.brake->name, p.commands.size())
                                       : p.pressure_table);
   fmt::print(
       "  run        {:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} "

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <exception>
 #include <functional>
-#include <thread>
 
 #include "ltd_master/run_command.h"
 #include "ltd_master/vehicle_commands.h"
@@ -37,7 +35,6 @@ void AddInput(CLI::App* command, const char* name, const char* help, std::string
 
 int Main(int argc, char** argv) {
   ltd_master::RunOptions options;
-  options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::string vehicle;
   bool adhesion_csv = false;
   std::function<int()> command;
@@ -52,9 +49,9 @@ int Main(int argc, char** argv) {
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
   run->add_option("--out", options.out,
                   "folder for train.bag, config.yaml and summary.json; default: write nothing");
-  run->add_option("--threads", options.threads, "threads; any number gives the same bits")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  run->add_option("--threads", options.threads,
+                  "threads; any number gives the same bits; default: one per core for 2d, one for ltd")
+      ->check(CLI::Range(1, 1024));
   run->add_flag("--csv", options.csv,
                 "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
   run->callback([&] {

@@ -19,7 +19,7 @@ struct RunOptions {
   std::string model;  ///< empty: the scenario's
   std::string out;    ///< empty: nothing is written
   std::vector<std::string> overrides;
-  int threads = 1;
+  int threads = 0;  ///< 0: one per core for the 2D model, one for LTD
   bool csv = false;
 };
 

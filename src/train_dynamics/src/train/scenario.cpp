@@ -48,7 +48,8 @@ bool ScenarioParams::CommandTimesAscend() const {
 }
 
 bool ScenarioParams::ReductionsMeasured() const {
-  const std::vector<double>& measured = brake.service.reduction_kpa;
+  if (!brake) return true;
+  const std::vector<double>& measured = brake->service.reduction_kpa;
   return std::all_of(commands.begin(), commands.end(), [&measured](const BrakeCommand& c) {
     return c.kind != BrakeCommandKind::kApply ||
            (!measured.empty() && c.reduction_kpa >= measured.front() && c.reduction_kpa <= measured.back());
@@ -56,8 +57,9 @@ bool ScenarioParams::ReductionsMeasured() const {
 }
 
 bool ScenarioParams::SourcesInTrain() const {
+  if (!brake) return true;
   const int n = train.VehicleCount();
-  return std::all_of(brake.sources.begin(), brake.sources.end(),
+  return std::all_of(brake->sources.begin(), brake->sources.end(),
                      [n](const BrakeSourceParams& s) { return VehicleIndex(s.vehicle, n) >= 0; });
 }
 

@@ -21,7 +21,7 @@ std::vector<int> DetailedVehicles(const ScenarioParams& scenario, int vehicles) 
 }  // namespace
 
 PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
-  const auto brake = std::make_shared<const AirBrake>(scenario.brake, scenario.commands, consist.centre_m);
+  const auto brake = std::make_shared<const AirBrake>(*scenario.brake, scenario.commands, consist.centre_m);
   return
       [brake](double time_s, std::vector<double>& pressure_pa) { brake->PressuresAt(time_s, pressure_pa); };
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct ScenarioParams {
   TrackParams track;
   std::string
       pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
-  AirBrakeParams brake;
+  std::optional<AirBrakeParams> brake;  ///< computes the pressures from the driver's commands
   std::vector<BrakeCommand> commands;
   double initial_speed_kmh = kRequired;
   double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
@@ -52,13 +53,12 @@ struct ScenarioParams {
     v.Part("train", train, "trains");
     v.Part("track", track, "tracks");
     v.Text("pressure_table", pressure_table);
-    if (pressure_table.empty()) {
-      v.Part("brake", brake, "brakes");
-      v.List("commands", commands);
-      v.Check(CommandTimesAscend(), "commands", "must ascend in time_s");
-      v.Check(ReductionsMeasured(), "commands", "must keep reduction_kpa within brake.service.reduction_kpa");
-      v.Check(SourcesInTrain(), "brake", "must have its sources at vehicles of the train");
-    }
+    v.Part("brake", brake, "brakes");
+    v.List("commands", commands);
+    v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
+    v.Check(CommandTimesAscend(), "commands", "must ascend in time_s");
+    v.Check(ReductionsMeasured(), "commands", "must keep reduction_kpa within brake.service.reduction_kpa");
+    v.Check(SourcesInTrain(), "brake", "must have its sources at vehicles of the train");
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Number("start_position_m", start_position_m, kFinite);
     v.Choice("initial_slack", initial_slack,

@@ -14,7 +14,7 @@ namespace train_dynamics {
 /// Cylinder pressure of each vehicle [Pa] at a time [s].
 using PressureSource = std::function<void(double time_s, std::vector<double>& pressure_pa)>;
 
-/// The air brake of a scenario as a source of pressures.
+/// The air brake of a scenario, which must have one, as a source of pressures.
 PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
 
 /// The train at the end of an exchange, as it is recorded. Forces and pressures are those of the interval

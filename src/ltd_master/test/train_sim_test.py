@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+"""train_sim as its users meet it: exit codes, the text of errors, files, Ctrl-C, repeated runs.
+
+usage: train_sim_test.py TRAIN_SIM CONFIG_FOLDER [--gtest_output=xml:FILE]
+"""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rosbag
+import rosunit
+
+TRAIN_SIM, CONFIG = sys.argv[1], pathlib.Path(sys.argv[2])
+EMERGENCY = str(CONFIG / "scenarios" / "emergency.yaml")
+DIP = str(CONFIG / "scenarios" / "dip.yaml")
+SHORT = ["--set", "duration_s=0.5"]
+
+
+def train_sim(*arguments):
+    return subprocess.run([TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          timeout=300)
+
+
+class TrainSimTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.out = pathlib.Path(self.folder.name) / "out"
+        self.addCleanup(self.folder.cleanup)
+
+    def run_ok(self, *arguments):
+        done = train_sim("run", *arguments)
+        self.assertEqual(0, done.returncode, done.stderr)
+        return json.loads(done.stdout)
+
+    def write(self, name, text):
+        path = pathlib.Path(self.folder.name) / name
+        path.write_text(text)
+        return path
+
+    def test_summary_names_everything(self):
+        summary = self.run_ok(EMERGENCY, "--model", "ltd", "--out", self.out, "--set", "duration_s=5")
+        self.assertEqual(summary, json.loads((self.out / "summary.json").read_text()))
+        self.assertEqual(("emergency", "ltd", 242), (summary["scenario"], summary["model"], summary["vehicles"]))
+        self.assertEqual((0.001, 0.001, 5), (summary["dt_s"], summary["exchange_interval_s"], summary["simulated_s"]))
+        self.assertTrue(summary["complete"])
+        self.assertFalse(summary["stopped"])
+        self.assertIsNone(summary["stop_time_s"])
+        self.assertEqual({"mean", "lead", "tail"}, set(summary["final_speed_kmh"]))
+        for extreme in (summary["max_tension_n"], summary["max_compression_n"]):
+            self.assertEqual({"value", "connection", "time_s"}, set(extreme))
+        energy = summary["energy"]
+        for element in ("brake_shoes", "draft_gears", "draw_bars", "wheel_rail_creep", "air_drag"):
+            self.assertIn(element, energy["dissipated_j"])
+        self.assertLess(abs(energy["residual_j"]), 1e-6 * energy["initial_j"])
+        balance = energy["initial_j"] + energy["gravity_work_j"] - energy["final_j"] - sum(energy["dissipated_j"].values())
+        self.assertLess(abs(balance), 1e-6 * energy["initial_j"])
+        self.assertRegex(summary["state_digest"], "^[0-9a-f]{16}$")
+
+    def test_bag_holds_every_record(self):
+        self.run_ok(EMERGENCY, "--out", self.out, "--set", "duration_s=0.2")
+        self.assertFalse((self.out / "train.bag.active").exists())
+        with rosbag.Bag(str(self.out / "train.bag")) as bag:
+            topics = bag.get_type_and_topic_info().topics
+            count = {topic: info.message_count for topic, info in topics.items()}
+            self.assertEqual(21, count["/train/state"])  # time 0 and every 10 ms
+            self.assertEqual(21, count["/train/in_train_forces"])
+            self.assertEqual(21, count["/train/brake_pressures"])
+            self.assertEqual(2, count["/train/energy_ledger"])  # the start and the end
+            for wagon in ("wagon_001", "wagon_100", "wagon_122", "wagon_242"):
+                self.assertEqual(21, count["/train/%s/state" % wagon])
+            times = []
+            for _, state, _ in bag.read_messages("/train/state"):
+                times.append(state.header.stamp.to_sec())
+                self.assertEqual(242, len(state.position_m))
+                self.assertEqual(len(times) * 10 - 10, state.exchange)
+            for i, t in enumerate(times):
+                self.assertAlmostEqual(0.01 * i, t, places=9)
+            for _, forces, _ in bag.read_messages("/train/in_train_forces"):
+                self.assertEqual(241, len(forces.coupler_force_n))
+            last = list(bag.read_messages("/train/wagon_100/state"))[-1][1]
+            self.assertEqual(100, last.vehicle)
+            # At 80 km/h without brakes the rails carry the weight: 160.1138 t.
+            self.assertAlmostEqual(160113.8 * 9.81, sum(last.wheel_normal_force_n), delta=2000)
+
+    def test_same_bits_for_any_threads_and_from_the_resolved_config(self):
+        first = self.run_ok(EMERGENCY, "--threads", 1, "--out", self.out, "--set", "duration_s=0.3")
+        for threads in (2, 3):
+            again = self.run_ok(EMERGENCY, "--threads", threads, "--set", "duration_s=0.3")
+            self.assertEqual(first["state_digest"], again["state_digest"])
+        resolved = self.run_ok(self.out / "config.yaml", "--out", str(self.out) + "2")
+        self.assertEqual(first["state_digest"], resolved["state_digest"])
+        self.assertEqual((self.out / "config.yaml").read_text(),
+                         (pathlib.Path(str(self.out) + "2") / "config.yaml").read_text())
+        other = self.run_ok(EMERGENCY, "--set", "duration_s=0.3", "--set", "initial_speed_kmh=80.0000001")
+        self.assertNotEqual(first["state_digest"], other["state_digest"])
+
+    def test_csv_tables(self):
+        self.run_ok(EMERGENCY, "--csv", "--out", self.out, "--set", "duration_s=0.1")
+        with open(self.out / "couplers.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(241, len(rows))
+        self.assertEqual({"connection", "max_tension_n", "max_tension_time_s", "max_compression_n",
+                          "max_compression_time_s"}, set(rows[0]))
+        with open(self.out / "vehicles.csv", newline="") as table:
+            self.assertEqual(242, len(list(csv.DictReader(table))))
+        with open(self.out / "train_history.csv", newline="") as table:
+            self.assertEqual(11, len(list(csv.DictReader(table))))
+        with open(self.out / "wagon_100.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(11, len(rows))
+        for column in ("normal_force_wheelset_1_n", "creepage_wheelset_4", "creep_force_wheelset_1_n",
+                       "shoe_force_wheelset_1_n", "carbody_pitch_rad", "spring_deflection_front_front_m",
+                       "wedge_friction_rear_rear_n"):
+            self.assertIn(column, rows[0])
+        self.assertAlmostEqual(0.0585, float(rows[-1]["spring_deflection_front_front_m"]), places=4)
+
+    def test_a_saved_pressure_table_repeats_the_run(self):
+        """The paper's procedure: pressures from an LTD run, saved every 0.01 s, interpolated by the wagons."""
+        settings = ["--set", "duration_s=6"]
+        ltd = self.run_ok(EMERGENCY, "--model", "ltd", "--csv", "--out", self.out, *settings)
+        table = self.out / "pressures.csv"
+        again = self.run_ok(EMERGENCY, "--model", "ltd", *settings, "--set", f"pressure_table={table}", "--out",
+                            str(self.out) + "2")
+        # The table has the pressures of the middle of the exchange before each record: half a millisecond early.
+        self.assertAlmostEqual(ltd["final_speed_kmh"]["mean"], again["final_speed_kmh"]["mean"], delta=1e-3)
+        resolved = self.run_ok(pathlib.Path(str(self.out) + "2") / "config.yaml")
+        self.assertEqual(again["state_digest"], resolved["state_digest"])
+
+    def test_pressure_table_errors(self):
+        table = self.write("table.csv", "time_s,vehicle_1_pa\n0,0\n1,x\n")
+        done = train_sim("run", DIP, "--set", f"pressure_table={table}")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("table.csv:3:", done.stderr)
+        table.write_text("time_s,vehicle_2_pa\n0,0\n")
+        done = train_sim("run", DIP, "--set", f"pressure_table={table}")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("vehicle_1_pa", done.stderr)
+
+    def test_bad_configuration_ends_with_2_and_writes_nothing(self):
+        scenario = self.write("bad.yaml", "base: %s\ndt: 0.001\nduration_s: -1\ninitial_speed_kmh: 80 km/h\n" % EMERGENCY)
+        done = train_sim("run", scenario, "--out", self.out)
+        self.assertEqual(2, done.returncode)
+        self.assertEqual("", done.stdout)
+        self.assertIn("bad.yaml:2: dt is not a known key; the key is dt_s, in s", done.stderr)
+        self.assertIn("bad.yaml:3: duration_s must be", done.stderr)
+        self.assertIn("bad.yaml:4: initial_speed_kmh must be a plain number in km/h", done.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_rules_between_keys(self):
+        for change, complaint in (("exchange_interval_s=0.0015", "exchange_interval_s must be a multiple of dt_s"),
+                                  ("record_interval_s=0.0105", "record_interval_s must be a multiple"),
+                                  ("detail_vehicles=[243]", "detail_vehicles must name vehicles of the train"),
+                                  ("brake.sources[1].vehicle=300", "brake must have its sources at vehicles"),
+                                  ("commands=[{time_s: 1, kind: apply, reduction_kpa: 20}]", "commands must keep"),
+                                  ("integrator=newmark", "integrator must be leapfrog for the 2d model")):
+            done = train_sim("check", EMERGENCY, "--set", change)
+            self.assertEqual(2, done.returncode, change)
+            self.assertIn(complaint, done.stderr)
+
+    def test_bad_arguments(self):
+        for arguments in ([], ["run"], ["fly", EMERGENCY], ["run", EMERGENCY, "--model", "3d"],
+                          ["run", EMERGENCY, "--threads", "0"], ["run", EMERGENCY, "--csv"], ["run", EMERGENCY, "--tread"]):
+            done = train_sim(*arguments)
+            self.assertEqual(2, done.returncode, arguments)
+            self.assertNotEqual("", done.stderr, arguments)
+        self.assertEqual(0, train_sim("--help").returncode)
+        self.assertRegex(train_sim("--version").stdout, r"^train_sim \d+\.\d+\.\d+")
+
+    def test_the_scenario_is_never_overwritten(self):
+        self.run_ok(DIP, "--out", self.out, *SHORT)
+        before = (self.out / "config.yaml").read_text()
+        done = train_sim("run", self.out / "config.yaml", "--out", self.out)
+        self.assertEqual(1, done.returncode)
+        self.assertIn("is the folder of", done.stderr)
+        self.assertEqual(before, (self.out / "config.yaml").read_text())
+
+    def test_a_second_run_replaces_the_first(self):
+        self.run_ok(EMERGENCY, "--out", self.out, "--csv", "--set", "duration_s=0.02")
+        self.run_ok(DIP, "--out", self.out, *SHORT)
+        self.assertEqual({"config.yaml", "summary.json", "train.bag"}, {p.name for p in self.out.iterdir()})
+
+    def test_an_unwritable_folder(self):
+        file = self.write("file", "")
+        done = train_sim("run", DIP, "--out", file / "below")
+        self.assertEqual(1, done.returncode)
+        self.assertIn("file", done.stderr)
+
+    def test_ctrl_c_keeps_what_was_simulated(self):
+        process = subprocess.Popen([TRAIN_SIM, "run", EMERGENCY, "--out", str(self.out), "--set", "duration_s=1000"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not (self.out / "train.bag.active").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode, stderr)
+        self.assertIn("interrupted", stderr)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertFalse(summary["complete"])
+        self.assertIsNone(summary["fault"])
+        with rosbag.Bag(str(self.out / "train.bag")) as bag:
+            last = max(m.exchange for _, m, _ in bag.read_messages("/train/state"))
+        self.assertLessEqual(last * 0.001, summary["simulated_s"])
+        self.assertGreater(last * 0.001, summary["simulated_s"] - 0.011)
+
+    def test_a_broken_simulation_names_the_culprit(self):
+        """A step beyond the largest stable one (train_sim modes: 1.74 ms) diverges in the suspension."""
+        done = train_sim("run", DIP, "--out", self.out, "--set", "dt_s=0.002", "--set", "exchange_interval_s=0.002",
+                         "--set", "record_interval_s=0.002")
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assertRegex(done.stderr, r"vehicle 1: (front|rear|wheelset|carbody).* is .* at t = \d+\.\d+ s")
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertFalse(summary["complete"])
+        self.assertIn("vehicle 1", summary["fault"])
+        with rosbag.Bag(str(self.out / "train.bag")) as bag:
+            self.assertGreater(bag.get_message_count("/train/state"), 0)
+
+    def test_vehicle_commands(self):
+        wagon = str(CONFIG / "vehicles" / "ore_wagon.yaml")
+        modes = train_sim("modes", wagon)
+        self.assertEqual(0, modes.returncode)
+        self.assertRegex(modes.stdout, r"1 +2\.0\d+ .*carbody z 99 %")  # bounce, 2.04 Hz
+        self.assertRegex(modes.stdout, r"largest stable explicit step: 1\.\d+ ms")
+        adhesion = train_sim("adhesion", wagon, "--csv", "--set", "wheel_rail.adhesion=wet")
+        rows = list(csv.DictReader(adhesion.stdout.splitlines()))
+        self.assertEqual(0.0, float(rows[0]["adhesion_at_40_kmh"]))
+        self.assertTrue(all(float(row["adhesion_at_40_kmh"]) <= 0.3 for row in rows))
+        self.assertEqual(2, train_sim("modes", wagon, "--set", "carbody.mass_kg=-1").returncode)
+
+
+if __name__ == "__main__":
+    os.environ.pop("TRAIN_BRAKE_CONFIG", None)
+    rosunit.unitrun("ltd_master", "train_sim_test", TrainSimTest)
