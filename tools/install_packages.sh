@@ -1,8 +1,11 @@
 #!/bin/sh
-# Installs the Debian packages of packages.txt that are missing; says nothing when none is.
+# Installs the Debian packages of packages.txt, and of further lists in this folder, that are missing; says nothing when
+# none is.
+#
+# usage: tools/install_packages.sh [LIST ...]
 set -eu
 
-packages=$(sed 's/#.*//' "$(dirname "$0")/packages.txt")
+packages=$(cd "$(dirname "$0")" && sed "s/#.*//" packages.txt "$@")
 
 case "${ROS_DISTRO:-Debian}" in
   Debian) ;;

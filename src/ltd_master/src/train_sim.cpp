@@ -36,7 +36,7 @@ void AddInput(CLI::App* command, const char* name, const char* help, std::string
 int Main(int argc, char** argv) {
   ltd_master::RunOptions options;
   std::string vehicle;
-  bool adhesion_csv = false;
+  bool table = false;
   std::function<int()> command;
 
   CLI::App app(kDescription, "train_sim");
@@ -67,14 +67,15 @@ int Main(int argc, char** argv) {
   CLI::App* modes =
       app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
   AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
-  modes->callback([&] { command = [&] { return ltd_master::PrintModes(vehicle, options.overrides); }; });
+  modes->add_flag("--csv", table, "comma-separated, with the shapes");
+  modes->callback([&] { command = [&] { return ltd_master::PrintModes(vehicle, options.overrides, table); }; });
 
   CLI::App* adhesion =
       app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");
   AddInput(adhesion, "VEHICLE", "vehicle file", vehicle, options.overrides);
-  adhesion->add_flag("--csv", adhesion_csv, "comma-separated");
+  adhesion->add_flag("--csv", table, "comma-separated");
   adhesion->callback(
-      [&] { command = [&] { return ltd_master::PrintAdhesion(vehicle, options.overrides, adhesion_csv); }; });
+      [&] { command = [&] { return ltd_master::PrintAdhesion(vehicle, options.overrides, table); }; });
 
   try {
     app.parse(argc, argv);

@@ -32,11 +32,33 @@ std::string LargestMotions(const WagonMode& mode) {
   return text;
 }
 
+/// The whole shapes: largest component 1, metres and radians alike.
+void PrintShapes(const train_dynamics::WagonModes& analysis) {
+  fmt::print("mode,frequency_hz,damping_ratio");
+  for (const char* body : train_dynamics::kBodyNames) {
+    std::string name = body;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    fmt::print(",{0}_x,{0}_z,{0}_pitch", name);
+  }
+  int number = 1;
+  for (const WagonMode& mode : analysis.modes) {
+    fmt::print("\n{},{:.6g},{:.6g}", number++, mode.frequency_hz, mode.damping_ratio);
+    for (int b = 0; b < train_dynamics::kBodies; ++b) {
+      fmt::print(",{:.4g},{:.4g},{:.4g}", mode.shape.x[b], mode.shape.z[b], mode.shape.pitch[b]);
+    }
+  }
+  fmt::print("\n");
+}
+
 }  // namespace
 
-int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides) {
+int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides, bool csv) {
   const train_dynamics::Wagon wagon(train_dynamics::config::LoadVehicle(vehicle_file, overrides));
   const train_dynamics::WagonModes analysis = train_dynamics::AnalyseModes(wagon);
+  if (csv) {
+    PrintShapes(analysis);
+    return kSuccess;
+  }
   fmt::print("{}: {:.1f} kg, linearised about its static equilibrium, wedges without friction\n\n",
              wagon.params.name, wagon.params.TotalMass());
   fmt::print("{:>5} {:>12} {:>9}   {}\n", "mode", "frequency_hz", "damping",

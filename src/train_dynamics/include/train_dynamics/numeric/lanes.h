@@ -218,4 +218,11 @@ struct ScalarTypes<Lanes<N, kWidth>> {
   using Bits = LaneBits<N, kWidth>;
 };
 
+template <class Function, int N, int kWidth>
+Lanes<N, kWidth> MapLanes(const Function& function, const Lanes<N, kWidth>& x) {
+  double values[N];
+  for (int lane = 0; lane < N; ++lane) values[lane] = function(x[lane]);
+  return Lanes<N, kWidth>::Load(values);
+}
+
 }  // namespace train_dynamics

@@ -70,4 +70,10 @@ constexpr std::uint64_t ToBits(double x) { return __builtin_bit_cast(std::uint64
 /// The number with this pattern.
 constexpr double FromBits(std::uint64_t bits) { return __builtin_bit_cast(double, bits); }
 
+/// A function of one number applied to each number in T: for what is looked up rather than computed.
+template <class Function>
+double MapLanes(const Function& function, double x) {
+  return function(x);
+}
+
 }  // namespace train_dynamics

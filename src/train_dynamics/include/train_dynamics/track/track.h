@@ -39,12 +39,6 @@ RailHeight RailHeightAt(const TrackParams& track, double position_m);
 /// mu0 under a wheel: that of the patch, or the vehicle's own outside of every patch.
 double FrictionAt(const TrackParams& track, double position_m, double vehicle_friction);
 
-/// Applies a function of one number to each of the numbers in T.
-template <class Function>
-double MapLanes(const Function& function, double x) {
-  return function(x);
-}
-
 /// What a wheel meets at its position: rail height [m], slope [-] and mu0 [-].
 template <class T>
 struct RailPoint {
