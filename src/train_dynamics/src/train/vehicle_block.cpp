@@ -3,16 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "train_dynamics/vehicle/wagon_step.h"
+#include "train_dynamics/vehicle/wagon_batch.h"
 
 namespace train_dynamics {
 namespace {
-
-// A vehicle beyond these has left every law's domain.
-constexpr double kAbsurdSpeed = 300.0;      // [m/s], of any body
-constexpr double kAbsurdMovement = 1.0;     // [m], of any body, vertical
-constexpr double kAbsurdPitch = 0.5;        // [rad], of any body but a wheelset
-constexpr double kAbsurdRotation = 3000.0;  // [rad/s], of a wheelset
 
 std::string Describe(const char* what, double value, const char* unit) {
   return std::string(what) + " is " + std::to_string(value) + " " + unit;
@@ -85,7 +79,7 @@ class LtdBlock : public VehicleBlock {
   }
 
  private:
-  static bool IsSound(const LtdState<double>& s) { return std::abs(s.v_mps) < kAbsurdSpeed; }
+  static bool IsSound(const LtdState<double>& s) { return std::abs(s.v_mps) < absurd::kSpeed; }
 
   TrackParams track_;
   LtdIntegrator integrator_;
@@ -96,90 +90,97 @@ class LtdBlock : public VehicleBlock {
   std::vector<double> shoe_force_n_;
 };
 
-/// Wagons of the 2D train.
+/// Wagons of the 2D train, in one batch for each run of equal vehicles.
 class WagonBlock : public VehicleBlock {
  public:
   WagonBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count)
       : track_(scenario.track), first_(first) {
-    for (const VehicleParams& type : consist.vehicle_types) types_.emplace_back(type);
-    for (int i = first; i < first + count; ++i) {
-      type_.push_back(consist.vehicle_type[i]);
-      states_.push_back(StaticEquilibrium(
-          types_[type_.back()], scenario.start_position_m + consist.centre_m[i], scenario.InitialSpeed()));
+    const WagonKernel& kernel = WagonKernels().front();
+    for (int i = first; i < first + count;) {
+      const int type = consist.vehicle_type[i], begin = i;
+      const Wagon wagon(consist.vehicle_types[type]);
+      std::vector<WagonState<double>> states;
+      for (; i < first + count && consist.vehicle_type[i] == type; ++i) {
+        states.push_back(StaticEquilibrium(wagon, scenario.start_position_m + consist.centre_m[i],
+                                           scenario.InitialSpeed()));
+      }
+      batches_.push_back({begin, WagonBatch(wagon, kernel, states)});
     }
-    outputs_.resize(count);
   }
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
     bool sound = true;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const Wagon& type = types_[type_[i]];
-      VehicleLoads<double> loads;
-      loads.front_coupler_n = request.coupler_force_n[offset + i];
-      loads.rear_coupler_n = request.coupler_force_n[offset + i + 1];
-      loads.cylinder_pressure_pa = request.cylinder_pressure_pa[offset + i];
-      WagonState<double>& s = states_[i];
-      for (int step = 0; step < request.steps; ++step) {
-        const bool shown = request.record && step + 1 == request.steps;
-        StepWagon(type, track_, loads, request.dt_s, s, shown ? &outputs_[i] : nullptr);
+    for (Run& run : batches_) {
+      const int at = offset + run.begin - first_;
+      for (int i = 0; i < run.batch.size(); ++i) {
+        run.batch.SetLoads(i, request.coupler_force_n[at + i], request.coupler_force_n[at + i + 1],
+                           request.cylinder_pressure_pa[at + i]);
       }
-      reply.head_displacement_m[offset + i] = CouplerHead(type, s.position);
-      reply.head_velocity_mps[offset + i] = CouplerHead(type, s.velocity);
-      sound = sound & IsSound(s);
+      run.batch.Advance(track_, request.dt_s, request.steps, request.record);
+      for (int i = 0; i < run.batch.size(); ++i) {
+        reply.head_displacement_m[at + i] = run.batch.HeadDisplacement(i);
+        reply.head_velocity_mps[at + i] = run.batch.HeadVelocity(i);
+        sound = sound & run.batch.IsSound(i);
+      }
     }
     if (request.record) Report(offset, request.ledger, reply);
     return sound;
   }
 
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override {
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const Wagon& type = types_[type_[i]];
-      const WagonState<double>& s = states_[i];
-      const WagonOutput<double>& out = outputs_[i];
-      const size_t at = offset + i;
-      reply.head_displacement_m[at] = CouplerHead(type, s.position);
-      reply.head_velocity_mps[at] = CouplerHead(type, s.velocity);
-      reply.position_m[at] = s.origin_m + s.position.x[kCarbody];
-      reply.speed_mps[at] = s.velocity.x[kCarbody];
-      double shoes = 0.0, wheels = 0.0, creepage = 0.0;
-      for (int wheelset = 0; wheelset < kWheelsets; ++wheelset) {
-        shoes += out.shoe_force_n[wheelset];
-        wheels += out.creep_force_n[wheelset];
-        if (std::abs(out.creepage[wheelset]) > std::abs(creepage)) creepage = out.creepage[wheelset];
+    for (const Run& run : batches_) {
+      for (int i = 0; i < run.batch.size(); ++i) {
+        ReportOne(run.batch.wagon(), run.batch.State(i), run.batch.Output(i), offset + run.begin - first_ + i,
+                  with_energy, reply);
       }
-      reply.shoe_force_n[at] = shoes;
-      reply.wheel_force_n[at] = wheels;
-      reply.creepage[at] = creepage;
-      reply.state_digest[at] = DigestOf(s);
-      if (with_energy) reply.energy[at] = {KineticEnergy(type, s), PotentialEnergy(type, track_, s), s.work};
     }
     for (WagonDetail& detail : reply.details) {
-      const size_t i = detail.vehicle - first_;
-      if (detail.vehicle < first_ || i >= states_.size()) continue;
-      detail.position = states_[i].position;
-      detail.velocity = states_[i].velocity;
-      detail.output = outputs_[i];
-      detail.nest_compression_m = ElementsOf(types_[type_[i]], states_[i].position).nest;
+      for (const Run& run : batches_) {
+        const int i = detail.vehicle - run.begin;
+        if (i < 0 || i >= run.batch.size()) continue;
+        const WagonState<double> s = run.batch.State(i);
+        detail.position = s.position;
+        detail.velocity = s.velocity;
+        detail.output = run.batch.Output(i);
+        detail.nest_compression_m = ElementsOf(run.batch.wagon(), s.position).nest;
+      }
     }
   }
 
   VehicleFault FindFault() const override {
-    for (size_t i = 0; i < states_.size(); ++i) {
-      if (!IsSound(states_[i])) return {first_ + static_cast<int>(i), FaultOf(states_[i])};
+    for (const Run& run : batches_) {
+      for (int i = 0; i < run.batch.size(); ++i) {
+        const WagonState<double> s = run.batch.State(i);
+        if (!IsSound(s)) return {run.begin + i, FaultOf(s)};
+      }
     }
     return {};
   }
 
  private:
-  static bool IsSound(const WagonState<double>& s) {
-    bool sound = true;
-    for (int b = 0; b < kBodies; ++b) {
-      sound = sound & (std::abs(s.velocity.x[b]) < kAbsurdSpeed) &
-              (std::abs(s.velocity.z[b]) < kAbsurdSpeed) & (std::abs(s.position.z[b]) < kAbsurdMovement);
-      sound = sound & (b < kWheelset1 ? std::abs(s.position.pitch[b]) < kAbsurdPitch
-                                      : std::abs(s.velocity.pitch[b]) < kAbsurdRotation);
+  /// Vehicles of one type, one behind the other.
+  struct Run {
+    int begin;  ///< index of the first in the train
+    WagonBatch batch;
+  };
+
+  void ReportOne(const Wagon& type, const WagonState<double>& s, const WagonOutput<double>& out, size_t at,
+                 bool with_energy, ExchangeReply& reply) const {
+    reply.head_displacement_m[at] = CouplerHead(type, s.position);
+    reply.head_velocity_mps[at] = CouplerHead(type, s.velocity);
+    reply.position_m[at] = s.origin_m + s.position.x[kCarbody];
+    reply.speed_mps[at] = s.velocity.x[kCarbody];
+    double shoes = 0.0, wheels = 0.0, creepage = 0.0;
+    for (int wheelset = 0; wheelset < kWheelsets; ++wheelset) {
+      shoes += out.shoe_force_n[wheelset];
+      wheels += out.creep_force_n[wheelset];
+      if (std::abs(out.creepage[wheelset]) > std::abs(creepage)) creepage = out.creepage[wheelset];
     }
-    return sound;
+    reply.shoe_force_n[at] = shoes;
+    reply.wheel_force_n[at] = wheels;
+    reply.creepage[at] = creepage;
+    reply.state_digest[at] = DigestOf(s);
+    if (with_energy) reply.energy[at] = {KineticEnergy(type, s), PotentialEnergy(type, track_, s), s.work};
   }
 
   /// Names the first body that is not where a body can be.
@@ -189,13 +190,13 @@ class WagonBlock : public VehicleBlock {
         return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
       };
       const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
-      if (wrong(s.velocity.x[b], kAbsurdSpeed)) return describe("speed", s.velocity.x[b], "m/s");
-      if (wrong(s.velocity.z[b], kAbsurdSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
-      if (wrong(s.position.z[b], kAbsurdMovement))
+      if (wrong(s.velocity.x[b], absurd::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
+      if (wrong(s.velocity.z[b], absurd::kSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
+      if (wrong(s.position.z[b], absurd::kMovement))
         return describe("vertical displacement", s.position.z[b], "m");
-      if (b < kWheelset1 && wrong(s.position.pitch[b], kAbsurdPitch))
+      if (b < kWheelset1 && wrong(s.position.pitch[b], absurd::kPitch))
         return describe("pitch", s.position.pitch[b], "rad");
-      if (b >= kWheelset1 && wrong(s.velocity.pitch[b], kAbsurdRotation)) {
+      if (b >= kWheelset1 && wrong(s.velocity.pitch[b], absurd::kRotation)) {
         return describe("rotation", s.velocity.pitch[b], "rad/s");
       }
     }
@@ -216,10 +217,7 @@ class WagonBlock : public VehicleBlock {
 
   TrackParams track_;
   int first_;
-  std::vector<Wagon> types_;
-  std::vector<int> type_;
-  std::vector<WagonState<double>> states_;
-  std::vector<WagonOutput<double>> outputs_;
+  std::vector<Run> batches_;
 };
 
 }  // namespace

@@ -222,6 +222,27 @@ T CouplerHead(const Wagon& wagon, const BodyVector<T>& carbody_motion) {
   return carbody_motion.x[kCarbody] + wagon.coupler_arm_m * carbody_motion.pitch[kCarbody];
 }
 
+/// Limits beyond which a wagon has left every law's domain.
+namespace absurd {
+inline constexpr double kSpeed = 300.0;      ///< of any body [m/s]
+inline constexpr double kMovement = 1.0;     ///< of any body, vertical [m]
+inline constexpr double kPitch = 0.5;        ///< of any body but a wheelset [rad]
+inline constexpr double kRotation = 3000.0;  ///< of a wheelset [rad/s]
+}  // namespace absurd
+
+/// Whether every body is where and as fast as a body can be; false for anything that is not a number.
+template <class T>
+MaskOf<T> IsSound(const WagonState<T>& s) {
+  MaskOf<T> sound = Abs(s.velocity.x[kCarbody]) < T(absurd::kSpeed);
+  for (int b = 0; b < kBodies; ++b) {
+    sound = sound & (Abs(s.velocity.x[b]) < T(absurd::kSpeed)) & (Abs(s.velocity.z[b]) < T(absurd::kSpeed)) &
+            (Abs(s.position.z[b]) < T(absurd::kMovement)) &
+            (b < kWheelset1 ? Abs(s.position.pitch[b]) < T(absurd::kPitch)
+                            : Abs(s.velocity.pitch[b]) < T(absurd::kRotation));
+  }
+  return sound;
+}
+
 /// Kinetic energy of the nine bodies, rotation included [J].
 double KineticEnergy(const Wagon& wagon, const WagonState<double>& state);
 
