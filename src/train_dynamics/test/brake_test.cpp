@@ -1,0 +1,282 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "paper_vehicle.h"
+#include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/brake/pressure_table.h"
+#include "train_dynamics/brake/shoe_friction.h"
+#include "train_dynamics/numeric/monotone_cubic.h"
+
+namespace train_dynamics {
+namespace {
+
+constexpr double kPitch = 10.5;  // [m] between vehicles
+constexpr int kVehicles = 242;
+
+const AirBrakeParams& PaperBrake() {
+  static const AirBrakeParams brake = LoadPart<AirBrakeParams>("brakes/calibrated.yaml");
+  return brake;
+}
+
+std::vector<double> PaperTrain() {
+  std::vector<double> centres;
+  for (int i = 0; i < kVehicles; ++i) centres.push_back(-kPitch * i);
+  return centres;
+}
+
+BrakeCommand Apply(double time_s, double reduction_kpa) {
+  return {time_s, BrakeCommandKind::kApply, reduction_kpa};
+}
+BrakeCommand Emergency(double time_s) { return {time_s, BrakeCommandKind::kEmergency, 0.0}; }
+BrakeCommand Release(double time_s) { return {time_s, BrakeCommandKind::kRelease, 0.0}; }
+
+AirBrake Brake(const std::vector<BrakeCommand>& commands) {
+  return AirBrake(PaperBrake(), commands, PaperTrain());
+}
+
+double PressureOf(const AirBrake& brake, int vehicle, double time_s) {
+  std::vector<double> pressure;
+  brake.PressuresAt(time_s, pressure);
+  return pressure.at(vehicle);
+}
+
+struct Source {
+  int vehicle;
+  double delay_s;
+};
+const std::vector<Source> kApplying = {
+    {0, 0.0}, {121, 1.09}, {241, 3.2}};  // lead and mid locomotive, End-of-Train
+const std::vector<Source> kReleasing = {{0, 0.0}, {121, 0.0}};
+
+// First arrival after a command, and the distance from the source it comes from.
+struct Arrival {
+  double after_s, distance_m;
+};
+Arrival FirstWave(int vehicle, const std::vector<Source>& sources, double wave_speed) {
+  Arrival first{1e9, 0.0};
+  for (const Source& s : sources) {
+    const double distance = kPitch * std::abs(vehicle - s.vehicle);
+    if (s.delay_s + distance / wave_speed < first.after_s)
+      first = {s.delay_s + distance / wave_speed, distance};
+  }
+  return first;
+}
+
+// Relative rounding of a few operations and of Exp.
+constexpr double kRounding = 1e-13;
+
+TEST(AirBrake, ServiceApplicationIsEq2) {
+  const AirBrake brake = Brake({Apply(2.0, 170.0)});
+  for (int i = 0; i < kVehicles; ++i) {
+    const double arrival = 2.0 + FirstWave(i, kApplying, 180.0).after_s;
+    EXPECT_NEAR(brake.ArrivalTime(i), arrival, 1e-12);  // rounding
+    EXPECT_EQ(PressureOf(brake, i, arrival - 1e-9), 0.0);
+    for (const double t : {arrival + 0.5, 20.0, 90.0}) {
+      const double eq2 = 430e3 * (1.0 - std::exp(-0.041933 * (t - arrival)));
+      EXPECT_NEAR(PressureOf(brake, i, t), eq2, kRounding * 430e3);
+    }
+  }
+}
+
+TEST(AirBrake, EmergencyRisesSlowerFarFromItsSource) {
+  const AirBrake brake = Brake({Emergency(2.0)});
+  for (int i = 0; i < kVehicles; ++i) {
+    const Arrival wave = FirstWave(i, kApplying, 250.0);
+    const double beta = 0.238 - 0.1683 * wave.distance_m / 2530.5;
+    for (const double t : {10.0, 30.0}) {
+      const double eq2 = 430e3 * (1.0 - std::exp(-beta * (t - 2.0 - wave.after_s)));
+      EXPECT_NEAR(PressureOf(brake, i, t), eq2, kRounding * 430e3);
+    }
+  }
+  // With the other sources far away the wave of the lead alone would take 10 s to the rear; the End-of-Train
+  // device vents there after 3.2 s.
+  EXPECT_NEAR(brake.ArrivalTime(241), 2.0 + 3.2, 1e-12);
+  EXPECT_NEAR(brake.ArrivalTime(121), 2.0 + 1.09, 1e-12);
+  EXPECT_EQ(brake.ArrivalTime(0), 2.0);
+}
+
+TEST(AirBrake, AFurtherReductionStartsFromThePressureItMeets) {
+  const AirBrake brake = Brake({Apply(2.0, 50.0), Apply(30.0, 170.0)});
+  for (const int i : {0, 60, 121, 180, 241}) {
+    const double first = 2.0 + FirstWave(i, kApplying, 150.0).after_s;
+    const double second = 30.0 + FirstWave(i, kApplying, 180.0).after_s;
+    const double met = 118e3 * (1.0 - std::exp(-0.06 * (second - first)));
+    for (const double t : {second, second + 4.0, second + 60.0}) {
+      const double eq2 = met + (430e3 - met) * (1.0 - std::exp(-0.041933 * (t - second)));
+      EXPECT_NEAR(PressureOf(brake, i, t), eq2, kRounding * 430e3);
+    }
+  }
+}
+
+TEST(AirBrake, ReleaseComesFromTheLocomotivesOnly) {
+  const AirBrake brake = Brake({Apply(2.0, 50.0), Release(70.0)});
+  for (const int i : {0, 60, 121, 180, 241}) {
+    const double applied = 2.0 + FirstWave(i, kApplying, 150.0).after_s;
+    const double released = 70.0 + FirstWave(i, kReleasing, 180.0).after_s;
+    const double met = 118e3 * (1.0 - std::exp(-0.06 * (released - applied)));
+    EXPECT_NEAR(brake.ArrivalTime(i), released, 1e-12);
+    EXPECT_NEAR(PressureOf(brake, i, released + 25.0), met * std::exp(-0.08 * 25.0), kRounding * 430e3);
+    EXPECT_NEAR(PressureOf(brake, i, released + 500.0), 0.0, 1e-9);  // exp(-40)
+  }
+}
+
+TEST(AirBrake, AnEmergencyOvertakesTheServiceWave) {
+  // The service wave (180 m/s) leads by 0.5 s: the emergency wave (250 m/s) catches it after 0.5 / (1/180 -
+  // 1/250) m.
+  const AirBrake both = Brake({Apply(2.0, 170.0), Emergency(2.5)});
+  const AirBrake emergency = Brake({Emergency(2.5)});
+  const double caught = 0.5 / (1.0 / 180.0 - 1.0 / 250.0);
+  for (int i = 0; i * kPitch < 600.0; ++i) {  // where the lead locomotive's waves come first
+    const double after = 2.5 + i * kPitch / 250.0 + 1.0;
+    if (i * kPitch < caught) {
+      EXPECT_GT(PressureOf(both, i, after), PressureOf(emergency, i, after)) << i;  // it had begun to brake
+    } else {
+      EXPECT_EQ(PressureOf(both, i, after), PressureOf(emergency, i, after))
+          << i;  // only ever felt the emergency
+    }
+  }
+}
+
+TEST(AirBrake, PressureStaysBetweenWhereItWasAndItsGoal) {
+  const AirBrake brake =
+      Brake({Apply(1.0, 70.0), Apply(8.0, 140.0), Release(20.0), Apply(40.0, 50.0), Emergency(60.0)});
+  for (const int i : {0, 30, 121, 170, 241}) {
+    double before = 0.0;
+    for (double t = 0.0; t < 200.0; t += 0.05) {
+      const double p = PressureOf(brake, i, t);
+      EXPECT_GE(p, 0.0);
+      EXPECT_LE(p, 430e3);
+      if (t < 20.0) {
+        EXPECT_GE(p, before - 1e-9);
+        EXPECT_LE(p, 354e3);  // the steady pressure of 140 kPa
+      }
+      EXPECT_NEAR(p, before, 430e3 * 0.238 * 0.05 + 1e-9);  // no jumps: at most p_s beta dt
+      before = p;
+    }
+  }
+}
+
+TEST(AirBrake, ASmallerReductionDoesNotRelease) {
+  const AirBrake brake = Brake({Apply(0.0, 170.0), Apply(60.0, 50.0)});  // goal 118 kPa, met at about 395 kPa
+  const double met = PressureOf(brake, 0, 60.0);
+  EXPECT_GT(met, 118e3);
+  EXPECT_EQ(PressureOf(brake, 0, 200.0), met);
+}
+
+TEST(AirBrake, MeasuredReductionsAreReproduced) {
+  const ServiceApplicationParams& s = PaperBrake().service;
+  for (size_t k = 0; k < s.reduction_kpa.size(); ++k) {
+    const AirBrake brake = Brake({Apply(0.0, s.reduction_kpa[k])});
+    EXPECT_NEAR(PressureOf(brake, 0, 1e4), 1e3 * s.cylinder_pressure_kpa[k], 1e-6);  // exp(-400) later
+    EXPECT_NEAR(brake.ArrivalTime(20), 20 * kPitch / s.wave_speed_mps[k], 1e-12);
+    const double quarter_rise = std::log(4.0 / 3.0) / s.rise_rate_per_s[k];
+    EXPECT_NEAR(PressureOf(brake, 0, quarter_rise), 250.0 * s.cylinder_pressure_kpa[k], 1e-6);
+  }
+}
+
+TEST(AirBrake, BetweenMeasurementsNothingOvershoots) {
+  const ServiceApplicationParams& s = PaperBrake().service;
+  double before = 0.0;
+  for (double reduction = 50.0; reduction <= 170.0; reduction += 0.5) {
+    const double p = PressureOf(Brake({Apply(0.0, reduction)}), 0, 1e4);
+    EXPECT_GT(p, before);  // the measured pressures ascend
+    before = p;
+    const size_t k = std::upper_bound(s.reduction_kpa.begin(), s.reduction_kpa.end() - 1, reduction) -
+                     s.reduction_kpa.begin();
+    EXPECT_GE(p, 1e3 * s.cylinder_pressure_kpa[k - 1] - 1e-6);
+    EXPECT_LE(p, 1e3 * s.cylinder_pressure_kpa[k] + 1e-6);
+  }
+}
+
+TEST(MonotoneCubic, DoesNotOvershootAStep) {
+  const std::vector<double> x = {0.0, 1.0, 2.0, 3.0, 4.0}, y = {0.0, 0.0, 0.0, 1.0, 1.0};
+  double before = 0.0;
+  for (double at = 0.0; at <= 4.0; at += 0.01) {
+    const double value = MonotoneCubic(x, y, at);
+    EXPECT_GE(value, before - 1e-15);
+    EXPECT_LE(value, 1.0 + 1e-15);
+    before = value;
+  }
+  // A straight line is reproduced; rounding.
+  EXPECT_NEAR(MonotoneCubic({0.0, 1.0, 2.5, 4.0}, {1.0, 3.0, 6.0, 9.0}, 3.1), 7.2, 1e-14);
+  EXPECT_THROW(MonotoneCubic(x, y, 4.01), std::domain_error);
+}
+
+TEST(AirBrake, WithoutCommandsNothingBrakes) {
+  const AirBrake brake = Brake({});
+  EXPECT_EQ(brake.vehicles(), kVehicles);
+  EXPECT_EQ(PressureOf(brake, 100, 1e6), 0.0);
+  EXPECT_EQ(brake.ArrivalTime(100), std::numeric_limits<double>::infinity());
+}
+
+TEST(AirBrake, WrongInputIsRefused) {
+  const std::vector<double> ten(10, 0.0);
+  EXPECT_THROW(AirBrake(PaperBrake(), {Emergency(0.0)}, ten),
+               std::invalid_argument);                             // source at vehicle 122 of 10
+  EXPECT_THROW(Brake({Apply(0.0, 49.9)}), std::invalid_argument);  // outside the measured range
+  EXPECT_THROW(Brake({Apply(0.0, 170.1)}), std::invalid_argument);
+  EXPECT_THROW(Brake({Emergency(5.0), Release(4.0)}), std::invalid_argument);  // back in time
+  AirBrakeParams slow = PaperBrake();
+  slow.emergency.rise_rate_fall_length_m = 500.0;
+  slow.emergency.rise_rate_fall_per_s =
+      0.2;  // nothing is left at 595 m; vehicles stand up to 770 m from a source
+  EXPECT_THROW(AirBrake(slow, {Emergency(0.0)}, PaperTrain()), std::invalid_argument);
+  AirBrakeParams no_charger = PaperBrake();
+  for (BrakeSourceParams& source : no_charger.sources) source.releases = false;
+  EXPECT_THROW(AirBrake(no_charger, {Emergency(0.0), Release(9.0)}, PaperTrain()), std::invalid_argument);
+}
+
+TEST(PressureTable, IsLinearBetweenRowsAndHoldsItsEnds) {
+  const PressureTable table({1.0, 2.0, 4.0}, {{0.0, 100.0, 300.0}, {50.0, 0.0, 10.0}});
+  ASSERT_EQ(table.vehicles(), 2);
+  std::vector<double> p;
+  const auto expect = [&](double time, double first, double second) {
+    table.PressuresAt(time, p);
+    EXPECT_EQ(p, (std::vector<double>{first, second})) << time;
+  };
+  expect(-5.0, 0.0, 50.0);
+  expect(1.0, 0.0, 50.0);
+  expect(1.25, 25.0, 37.5);
+  expect(2.0, 100.0, 0.0);
+  expect(3.5, 250.0, 7.5);
+  expect(4.0, 300.0, 10.0);
+  expect(1e9, 300.0, 10.0);
+  PressureTable({0.0}, {{7.0}}).PressuresAt(3.0, p);
+  EXPECT_EQ(p, std::vector<double>{7.0});
+}
+
+TEST(PressureTable, WrongTablesAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(PressureTable({}, {}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, 0.0}, {{1.0, 2.0}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({1.0, 0.0}, {{1.0, 2.0}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, -2.0}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, nan}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, infinity}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({0.0, nan}, {{1.0, 2.0}}), std::invalid_argument);
+  EXPECT_THROW(PressureTable({nan}, {{1.0}}), std::invalid_argument);
+}
+
+TEST(ShoeFriction, LimitsAndAValueByHand) {
+  const ShoeFrictionParams& p = OreWagon().brake_rigging.shoe_friction;
+  EXPECT_EQ(ShoeFriction(p, 0.0), 0.322);
+  EXPECT_NEAR(ShoeFriction(p, 1e12), 0.161, 1e-10);
+  EXPECT_NEAR(ShoeFriction(p, 80.0 / 3.6), 0.322 * 230.0 / 310.0, 1e-15);  // rounding
+  EXPECT_EQ(ShoeFriction(p, -20.0), ShoeFriction(p, 20.0));
+}
+
+TEST(ShoeForce, IsLoadTimesFriction) {
+  const BrakeRiggingParams& p = OreWagon().brake_rigging;
+  EXPECT_NEAR(ShoeForce(p, 430e3, 0.0), 0.46035 * 430e3 * 0.322, 1e-9);
+  EXPECT_EQ(ShoeForce(p, 0.0, 10.0), 0.0);
+}
+
+}  // namespace
+}  // namespace train_dynamics

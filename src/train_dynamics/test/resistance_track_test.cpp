@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "paper_vehicle.h"
+#include "train_dynamics/numeric/trigonometry.h"
+#include "train_dynamics/resistance/propulsion.h"
+#include "train_dynamics/track/track.h"
+#include "train_dynamics/validate.h"
+
+namespace train_dynamics {
+namespace {
+
+const double kPi = std::acos(-1.0);
+
+// ---- propulsion resistance
+// ------------------------------------------------------------------------------------------
+
+TEST(PropulsionResistance, Eq5ByHand) {
+  const PropulsionResistanceParams& p = OreWagon().propulsion_resistance;
+  // 0.92 + 0.0048 80 + 0.000125 80^2 = 2.104 N per kN; a 40 t axle load is 1569.6 kN of weight.
+  EXPECT_NEAR(PropulsionResistance(p, 160e3 * 9.81, 80.0 / 3.6), 2.104 * 1569.6, 1e-9);  // rounding
+  EXPECT_NEAR(PropulsionResistance(p, 160e3 * 9.81, 0.0), 0.92 * 1569.6, 1e-9);
+}
+
+TEST(PropulsionResistance, SplitsIntoWheelsAndAir) {
+  const PropulsionResistanceParams& p = OreWagon().propulsion_resistance;
+  for (const double v : {0.0, 3.0, 22.2}) {
+    EXPECT_NEAR(RollingResistance(p, 1e6, v), 1e3 * (0.92 + 0.0048 * 3.6 * v), 1e-9);
+    EXPECT_NEAR(AirDrag(p, 1e6, v), 1e3 * 0.000125 * std::pow(3.6 * v, 2), 1e-9);
+    EXPECT_EQ(PropulsionResistance(p, 1e6, v), RollingResistance(p, 1e6, v) + AirDrag(p, 1e6, v));
+    EXPECT_EQ(PropulsionResistance(p, 1e6, -v), PropulsionResistance(p, 1e6, v));
+  }
+  EXPECT_EQ(AirDrag(p, 1e6, 0.0), 0.0);
+}
+
+// ---- track
+// ----------------------------------------------------------------------------------------------------------
+
+TEST(Grade, HoldsFromItsEntryToTheNext) {
+  TrackParams track;
+  EXPECT_EQ(GradeAt(track, 123.0), 0.0);
+  track.grades = {{0.0, -0.5}, {100.0, 0.0}, {250.0, 1.5}};
+  EXPECT_EQ(GradeAt(track, -1e6), -0.005);  // the first also holds before it
+  EXPECT_EQ(GradeAt(track, 0.0), -0.005);
+  EXPECT_EQ(GradeAt(track, 99.999), -0.005);
+  EXPECT_EQ(GradeAt(track, 100.0), 0.0);
+  EXPECT_EQ(GradeAt(track, 250.0), 0.015);
+  EXPECT_EQ(GradeAt(track, 1e9), 0.015);
+  EXPECT_EQ(GradeUnder(track, 180.0), 0.0);
+  track.grades = {{100.0, 2.0}};
+  EXPECT_EQ(GradeUnder(track, -5.0), 0.02);
+}
+
+TEST(Grade, EntriesMustAscend) {
+  TrackParams track;
+  track.grades = {{0.0, 1.0}, {0.0, 2.0}};
+  EXPECT_THROW(Validate(track), std::invalid_argument);
+}
+
+TEST(Dip, IsEq7) {
+  const DipParams dip{40.0, 0.0512, 10.0};
+  for (double x = 0.0; x <= 10.0; x += 0.1) {
+    // Accuracy of the cosine, 2e-16, times the depth.
+    EXPECT_NEAR(DipHeight(dip, 40.0 + x).height, -0.0256 * (1.0 - std::cos(2.0 * kPi * x / 10.0)), 1e-16);
+  }
+  EXPECT_NEAR(DipHeight(dip, 45.0).height, -0.0512, 1e-17);  // positive depth is down
+}
+
+TEST(Dip, SlopeIsTheDerivativeAndBothVanishOutside) {
+  const DipParams dip{-3.0, 0.03, 7.0};
+  constexpr double kStep = 1e-4;
+  for (double x = -4.03; x < 5.0; x += 0.05) {
+    const double difference =
+        (DipHeight(dip, x + kStep).height - DipHeight(dip, x - kStep).height) / (2.0 * kStep);
+    // h^2/6 times the third derivative, 0.011 1/m^2; across an end h/4 times the jump of the second, 0.012
+    // 1/m.
+    EXPECT_NEAR(DipHeight(dip, x).slope, difference, 3e-7) << x;
+  }
+  for (const double x : {-100.0, -3.0, 4.0, 100.0}) {
+    EXPECT_EQ(DipHeight(dip, x).height, 0.0);
+    EXPECT_EQ(DipHeight(dip, x).slope, 0.0);
+  }
+}
+
+TEST(Dip, OverlappingDipsAddUp) {
+  TrackParams track;
+  track.dips = {{0.0, 0.05, 10.0}, {4.0, -0.02, 8.0}};
+  for (const double x : {2.0, 5.0, 9.0, 11.0}) {
+    const RailHeight one = DipHeight(track.dips[0], x), other = DipHeight(track.dips[1], x);
+    EXPECT_EQ(RailHeightAt(track, x).height, one.height + other.height);
+    EXPECT_EQ(RailUnder(track, x, 0.4).slope, one.slope + other.slope);
+  }
+}
+
+TEST(FrictionPatch, ReplacesTheVehiclesOwn) {
+  TrackParams track;
+  EXPECT_EQ(FrictionAt(track, 5.0, 0.4), 0.4);
+  track.friction_patches = {{0.0, 100.0, 0.05}, {50.0, 60.0, 0.3}};
+  EXPECT_EQ(FrictionAt(track, -0.001, 0.4), 0.4);
+  EXPECT_EQ(FrictionAt(track, 0.0, 0.4), 0.05);
+  EXPECT_EQ(FrictionAt(track, 55.0, 0.4), 0.3);  // the later entry holds
+  EXPECT_EQ(FrictionAt(track, 60.0, 0.4), 0.05);
+  EXPECT_EQ(FrictionAt(track, 100.0, 0.4), 0.4);
+  EXPECT_EQ(RailUnder(track, 55.0, 0.4).friction, 0.3);
+}
+
+// ---- trigonometry
+// ---------------------------------------------------------------------------------------------------
+
+TEST(Trigonometry, AgreesWithTheLibrary) {
+  for (double turns = -3.0; turns < 3.0; turns += 0.000731) {
+    const SinCos sc = SinCosTurns(turns);
+    const long double angle = 2.0L * std::acos(-1.0L) * turns;
+    // The documented 2e-16, and half an ulp of 2 pi for the angle itself.
+    EXPECT_NEAR(sc.sin, static_cast<double>(std::sin(angle)), 3e-16);
+    EXPECT_NEAR(sc.cos, static_cast<double>(std::cos(angle)), 3e-16);
+  }
+  EXPECT_NEAR(SinCosDegrees(22.0).sin, std::sin(22.0 * kPi / 180.0), 3e-16);
+}
+
+TEST(Trigonometry, IsExactAtQuarterTurns) {
+  for (int turn = -2; turn <= 2; ++turn) {
+    EXPECT_EQ(SinCosTurns(turn).sin, 0.0);
+    EXPECT_EQ(SinCosTurns(turn).cos, 1.0);
+    EXPECT_EQ(SinCosTurns(turn + 0.25).sin, 1.0);
+    EXPECT_EQ(SinCosTurns(turn + 0.25).cos, 0.0);
+    EXPECT_EQ(SinCosTurns(turn + 0.5).cos, -1.0);
+    EXPECT_EQ(SinCosTurns(turn + 0.75).sin, -1.0);
+  }
+}
+
+}  // namespace
+}  // namespace train_dynamics

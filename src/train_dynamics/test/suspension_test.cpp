@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "paper_vehicle.h"
+#include "train_dynamics/suspension/centre_plate.h"
+#include "train_dynamics/suspension/friction_wedge.h"
+#include "train_dynamics/suspension/spring_nest.h"
+
+namespace train_dynamics {
+namespace {
+
+double Radians(double degrees) { return degrees * std::acos(-1.0) / 180.0; }
+
+// Central difference of an energy that is a parabola between its kinks: exact but for rounding, about
+// 1e-16 x 1e5 J / 1e-5 m = 1e-6 N, unless a kink lies within the step.
+template <class Energy>
+double Slope(const Energy& energy, double d) {
+  constexpr double kStep = 1e-5;
+  return (energy(d + kStep) - energy(d - kStep)) / (2.0 * kStep);
+}
+
+TEST(SpringNest, ForceIsTheSlopeOfTheEnergy) {
+  const SpringNestParams& p = OreWagon().spring_nest;
+  const auto energy = [&p](double d) { return SpringNestEnergy(p, d); };
+  for (double d = -0.0201; d < 0.09; d += 0.0007) {
+    EXPECT_NEAR(Slope(energy, d), SpringNestForce(p, d), 1e-4) << d;
+  }
+}
+
+TEST(SpringNest, StagesAndStops) {
+  const SpringNestParams& p = OreWagon().spring_nest;
+  const auto stiffness = [&p](double d) {
+    return (SpringNestForce(p, d + 1e-4) - SpringNestForce(p, d - 1e-4)) / 2e-4;
+  };
+  const double outer = 1590e3, inner = 566e3, solid = 4e8;  // the paper's
+  // A difference of a straight line: rounding, 1e-16 x 1e6 N / 1e-4 m.
+  EXPECT_NEAR(stiffness(0.010), outer, 1e-3);
+  EXPECT_NEAR(stiffness(0.050), outer + inner, 1e-3);
+  EXPECT_NEAR(stiffness(0.080), outer + inner + solid, 1e-2);
+  EXPECT_EQ(stiffness(-0.004), 0.0);
+  EXPECT_NEAR(stiffness(-0.012), solid, 1e-3);
+  EXPECT_EQ(SpringNestForce(p, 0.0), 0.0);
+  EXPECT_NEAR(SpringNestForce(p, 0.022), outer * 0.022, 1e-9);
+  EXPECT_NEAR(SpringNestForce(p, 0.074), outer * 0.074 + inner * 0.052, 1e-9);
+  EXPECT_LT(SpringNestForce(p, -0.009), 0.0);  // the rebound stop pulls
+}
+
+TEST(SpringNest, IsContinuous) {
+  const SpringNestParams& p = OreWagon().spring_nest;
+  // The steepest piece has 4.02e8 N/m: 1e-9 m may change the force by 0.4 N.
+  for (const double kink : {-0.008, 0.0, 0.022, 0.074}) {
+    EXPECT_NEAR(SpringNestForce(p, kink - 5e-10), SpringNestForce(p, kink + 5e-10), 0.41) << kink;
+  }
+}
+
+TEST(CentrePlate, TwoRimsMakeThePlateAndNeverPull) {
+  const CentrePlateParams& p = OreWagon().centre_plate;
+  EXPECT_NEAR(2.0 * RimForce(p, 1e-3, 0.0), 4e8 * 1e-3, 1e-9);
+  EXPECT_NEAR(2.0 * (RimForce(p, 1e-3, 0.1) - RimForce(p, 1e-3, 0.0)), 1e4 * 0.1, 1e-9);
+  EXPECT_EQ(RimForce(p, -1e-6, 0.0), 0.0);
+  EXPECT_EQ(RimForce(p, 1e-6, -10.0), 0.0);
+  const auto energy = [&p](double d) { return RimEnergy(p, d); };
+  for (const double d : {-1e-3, 2e-4, 1e-3}) EXPECT_NEAR(Slope(energy, d), RimForce(p, d, 0.0), 1e-4);
+}
+
+// ---- friction wedge
+// -------------------------------------------------------------------------------------------------
+
+TEST(WedgeSpring, ForceIsTheSlopeOfTheEnergyInTwoStages) {
+  const FrictionWedgeParams& p = OreWagon().friction_wedge;
+  const auto energy = [&p](double travel) { return WedgeSpringEnergy(p, travel); };
+  for (double travel = -0.0101; travel < 0.08; travel += 0.0007) {
+    EXPECT_NEAR(Slope(energy, travel), WedgeSpringForce(p, travel), 1e-4) << travel;
+  }
+  EXPECT_EQ(WedgeSpringForce(p, -0.01), 0.0);  // the wedge stands loose, it does not pull
+  EXPECT_NEAR(WedgeSpringForce(p, 0.020), 983e3 * 0.020, 1e-9);
+  EXPECT_NEAR(WedgeSpringForce(p, 0.050), 983e3 * 0.050 + 566e3 * 0.028, 1e-9);
+}
+
+// Eq 6 of the paper, corrected, as it stands: columns FN1, FN2 and the bolster's acceleration. With a
+// massless wedge, returns the vertical force on the bolster per unit of wedge spring force; `direction` is
+// sgn(z_bolster' - z_frame').
+double ForceRatioOfEq6(const FrictionWedgeParams& p, double mu, double direction) {
+  const double a = Radians(p.wedge_angle_deg), g = Radians(p.toe_angle_deg), sg = direction;
+  constexpr double kWedgeMass = 0.0, kBolsterShare = 280.0, kSpringForce = 1.0, kOtherForces = 0.0;
+  Eigen::Matrix3d m;
+  m << std::cos(g) - mu * sg * std::sin(g), -std::cos(a) - mu * sg * std::sin(a),
+      -kWedgeMass * std::sin(a) * std::sin(g) / std::sin(a + g),  //
+      -std::sin(g) - mu * sg * std::cos(g), -std::sin(a) + mu * sg * std::cos(a),
+      -kWedgeMass * std::sin(a) * std::cos(g) / std::sin(a + g),  //
+      0.0, std::sin(a) - mu * sg * std::cos(a), -kBolsterShare;
+  const Eigen::Vector3d solution = m.partialPivLu().solve(Eigen::Vector3d(0.0, -kSpringForce, kOtherForces));
+  EXPECT_GT(solution[0], 0.0);  // both faces are pressed
+  EXPECT_GT(solution[1], 0.0);
+  return kBolsterShare * solution[2] / kSpringForce;
+}
+
+TEST(FrictionWedge, ForceRatioSolvesEq6) {
+  FrictionWedgeParams p = OreWagon().friction_wedge;
+  for (const double toe : {2.5, 0.0, -1.0, 5.0}) {
+    for (const double slope : {30.0, 40.0, 55.0}) {
+      p.toe_angle_deg = toe;
+      p.wedge_angle_deg = slope;
+      const FrictionWedge wedge(p);
+      for (const double mu : {0.0, 0.05, 0.2, 0.35}) {
+        // Rounding of a well-conditioned 3 x 3 solution.
+        EXPECT_NEAR(wedge.ForceRatio(mu), ForceRatioOfEq6(p, mu, -1.0),
+                    1e-14);  // bolster comes down: loading
+        EXPECT_NEAR(wedge.ForceRatio(-mu), ForceRatioOfEq6(p, mu, +1.0), 1e-14);  // rises: unloading
+      }
+    }
+  }
+}
+
+TEST(FrictionWedge, NumbersOfThePapersWedge) {
+  const FrictionWedge wedge(OreWagon().friction_wedge);
+  // Half a unit of the last digit of the project's notes.
+  EXPECT_NEAR(wedge.ForceRatio(0.2), 1.14, 0.005);
+  EXPECT_NEAR(wedge.ForceRatio(0.0), 0.95, 0.005);
+  EXPECT_NEAR(wedge.ForceRatio(-0.2), 0.69, 0.005);
+  EXPECT_NEAR(wedge.kappa, 0.9505, 0.00005);
+}
+
+TEST(FrictionWedge, KappaIsTheTravelOfTheWedge) {
+  // The bolster comes down by 1 and the wedge slides down the column by s, at gamma to the vertical, and
+  // along the bolster's slope by t, at alpha to the vertical: s (sin g, -cos g) - t (sin a, cos a) = (0, -1).
+  FrictionWedgeParams p = OreWagon().friction_wedge;
+  for (const double toe : {-3.0, 0.0, 2.5}) {
+    p.toe_angle_deg = toe;
+    const double a = Radians(p.wedge_angle_deg), g = Radians(toe);
+    Eigen::Matrix2d m;
+    m << std::sin(g), -std::sin(a), -std::cos(g), -std::cos(a);
+    const Eigen::Vector2d slide = m.partialPivLu().solve(Eigen::Vector2d(0.0, -1.0));
+    EXPECT_NEAR(FrictionWedge(p).kappa, slide[0] * std::cos(g), 1e-15);  // rounding
+  }
+}
+
+TEST(FrictionWedge, BoundsOpposeTheMotionAndScaleWithTheSpring) {
+  const FrictionWedge wedge(OreWagon().friction_wedge);
+  for (const double rate : {0.0, 0.003, 0.5}) {
+    const WedgeFrictionBounds<double> bounds = WedgeFriction(wedge, 5e4, rate);
+    EXPECT_LT(bounds.lower, 0.0);
+    EXPECT_GT(bounds.upper, 0.0);
+    EXPECT_NEAR(WedgeFriction(wedge, 1e5, rate).upper, 2.0 * bounds.upper, 1e-10);
+    EXPECT_EQ(WedgeFriction(wedge, 5e4, -rate).upper, bounds.upper);  // even in the rate
+    // Elastic part and friction together are Eq 6 again.
+    const double mu = 0.20 + 0.03 / (1.0 + std::pow(rate / 0.01, 2));
+    EXPECT_NEAR(wedge.kappa * 5e4 + bounds.upper, 5e4 * ForceRatioOfEq6(wedge.params, mu, -1.0), 1e-9);
+    EXPECT_NEAR(wedge.kappa * 5e4 + bounds.lower, 5e4 * ForceRatioOfEq6(wedge.params, mu, +1.0), 1e-9);
+  }
+  EXPECT_EQ(WedgeFriction(wedge, 0.0, 0.0).upper, 0.0);
+  EXPECT_EQ(WedgeFriction(wedge, 0.0, 0.0).lower, 0.0);
+}
+
+TEST(FrictionWedge, FrictionFallsFromStaticToKinetic) {
+  const FrictionWedge wedge(OreWagon().friction_wedge);
+  const auto upper = [&wedge](double mu) { return 1e5 * (wedge.ForceRatio(mu) - wedge.kappa); };
+  EXPECT_EQ(WedgeFriction(wedge, 1e5, 0.0).upper, upper(0.23));
+  EXPECT_NEAR(WedgeFriction(wedge, 1e5, 0.01).upper, upper(0.215), 1e-9);  // half way at the blend speed
+  EXPECT_NEAR(WedgeFriction(wedge, 1e5, 10.0).upper, upper(0.20), 0.1);    // 1e-6 of the drop is left
+  double last = 1e9;
+  for (double rate = 0.0; rate < 0.1; rate += 1e-3) {
+    const double now = WedgeFriction(wedge, 1e5, rate).upper;
+    EXPECT_LT(now, last);
+    last = now;
+  }
+}
+
+}  // namespace
+}  // namespace train_dynamics

@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "simulate.h"
+
+namespace train_dynamics {
+namespace {
+
+// ---- the ledger of every scenario
+// -----------------------------------------------------------------------------------
+
+TEST(Ledger, ClosesForEveryScenarioInTwoDimensions) {
+  int scenarios = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios")) {
+    if (file.path().extension() != ".yaml") continue;
+    const std::string name = file.path().stem();
+    const config::LoadedScenario loaded = config::LoadScenario(file.path(), {});
+    std::vector<std::string> overrides = {"model=2d"};
+    if (loaded.consist.vehicles() > 10)
+      overrides.push_back("duration_s=10");  // of a long train its first seconds
+    const Outcome outcome = Simulate(name, overrides);
+    ExpectLedgerCloses(outcome, name);
+    ++scenarios;
+  }
+  EXPECT_GE(scenarios, 6);
+}
+
+// ---- one train, many threads
+// ----------------------------------------------------------------------------------------
+
+TEST(Threads, AnyNumberGivesTheSameBits) {
+  for (const char* model : {"model=2d", "model=ltd"}) {
+    const std::vector<std::string> overrides = {model, "duration_s=3.5"};  // 1.5 s of braking
+    const Outcome one = Simulate("emergency", overrides, 1);
+    EXPECT_EQ(Simulate("emergency", overrides, 2).digest, one.digest);
+    EXPECT_EQ(Simulate("emergency", overrides, 3).digest, one.digest);
+    // The digest sees the last bit of the start speed.
+    const std::string nudge = "initial_speed_kmh=80.00000000000001";
+    EXPECT_NE(Simulate("emergency", {model, "duration_s=3.5", nudge}).digest, one.digest);
+  }
+}
+
+TEST(Threads, AsManyAsVehiclesAtMost) {
+  const Outcome one = Simulate("dip", {"duration_s=1"}, 1);
+  EXPECT_EQ(Simulate("dip", {"duration_s=1"}, 16).digest, one.digest);
+}
+
+// ---- exchange
+// -------------------------------------------------------------------------------------------------------
+
+TEST(Exchange, AnIntervalOfFiveMillisecondsIsHarmless) {
+  const Outcome fine = Simulate("emergency", {"model=ltd", "duration_s=30"});
+  const Outcome coarse = Simulate("emergency", {"model=ltd", "duration_s=30", "exchange_interval_s=0.005"});
+  EXPECT_NEAR(coarse.mean_speed_kmh, fine.mean_speed_kmh,
+              1e-4);  // as the project's notes found; it is far less
+}
+
+TEST(Exchange, NewmarkRunsTheSameTrain) {
+  const Outcome leapfrog = Simulate("full_service", {"model=ltd", "duration_s=30"});
+  const Outcome newmark = Simulate("full_service", {"model=ltd", "duration_s=30", "integrator=newmark"});
+  // The same trajectory, sampled half a step apart: rounding of 30000 steps.
+  EXPECT_NEAR(newmark.mean_speed_kmh, leapfrog.mean_speed_kmh, 1e-9);
+  ExpectLedgerCloses(newmark, "newmark");
+}
+
+TEST(Records, ComeAtTheirTimes) {
+  const Outcome outcome =
+      Simulate("single_wagon_stop", {"duration_s=0.5", "record_interval_s=0.1", "ledger_interval_s=0.2"});
+  ASSERT_EQ(outcome.record_times.size(), 6u);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(outcome.record_times[i], 0.1 * i, 1e-15);
+  EXPECT_TRUE(std::isnan(outcome.accelerations.front()));
+  for (int i = 1; i < 6; ++i) EXPECT_LT(outcome.accelerations[i], 0.0);  // the resistance slows it
+  EXPECT_NEAR(outcome.ledger.time_s, 0.5, 1e-15);  // the last record has a ledger, due or not
+}
+
+// ---- faults
+// ---------------------------------------------------------------------------------------------------------
+
+// Runs a scenario whose brake pressures become NaN at vehicle 2 after 0.5 s; the fault's text.
+std::string FaultOf(const std::string& scenario, const std::vector<std::string>& overrides) {
+  const config::LoadedScenario loaded = config::LoadScenario(ScenarioFile(scenario), overrides);
+  InProcessTransport transport(loaded.params, loaded.consist, 2);
+  TrainMaster master(loaded.params, loaded.consist, transport,
+                     [&](double time_s, std::vector<double>& pressure_pa) {
+                       loaded.pressures(time_s, pressure_pa);
+                       if (time_s > 0.5) pressure_pa[1] = std::numeric_limits<double>::quiet_NaN();
+                     });
+  try {
+    master.Start();
+    while (!master.Done()) master.Exchange();
+  } catch (const SimulationFault& fault) {
+    EXPECT_NEAR(master.time_s(), 0.501, 1e-12);  // the end of the very exchange
+    return fault.what();
+  }
+  return "none";
+}
+
+TEST(Faults, NameVehicleBodyQuantityAndTime) {
+  EXPECT_EQ(FaultOf("emergency", {"model=ltd"}), "vehicle 2: speed is nan m/s at t = 0.501000 s");
+  EXPECT_EQ(FaultOf("emergency", {"model=2d"}), "vehicle 2: wheelset 1 speed is nan m/s at t = 0.501000 s");
+}
+
+TEST(Faults, AnAbsurdStateEndsTheRun) {
+  // A wall of one metre, and a time step far beyond the explicit limit of about 2 ms.
+  const std::vector<std::vector<std::string>> cases = {
+      {"track.dips[0].depth_m=-1", "track.dips[0].length_m=2"},
+      {"dt_s=0.005", "exchange_interval_s=0.005", "record_interval_s=0.005", "duration_s=5"}};
+  for (const auto& overrides : cases) {
+    try {
+      Simulate("dip", overrides);
+      ADD_FAILURE() << overrides[0] << " ran through";
+    } catch (const SimulationFault& fault) {
+      const std::string what = fault.what();
+      EXPECT_EQ(what.find("vehicle 1: "), 0u) << what;
+      EXPECT_NE(what.find(" at t = "), std::string::npos) << what;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace train_dynamics
