@@ -1,9 +1,11 @@
 # Front door of the workspace. Everything below works from a clean clone with nothing sourced.
 
-SCENARIO ?= emergency
-MODEL    ?= 2d
-OUT      ?= results/$(SCENARIO)
-JOBS     ?= $(shell nproc)
+SCENARIO          ?= emergency
+MODEL             ?= 2d
+NODES             ?= auto
+OUT               ?= results/$(SCENARIO)
+EXCHANGE_INTERVAL ?= 0
+JOBS              ?= $(shell nproc)
 
 SHELL       := /bin/bash
 .SHELLFLAGS := -o pipefail -c
@@ -29,7 +31,8 @@ sources = find src -name '*.h' -o -name '*.cpp'
 help: ## this list
 	@echo "Freight train braking simulator. Targets:"
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' Makefile | expand -t 24
-	@echo "Variables of make run: SCENARIO=$(SCENARIO) MODEL=$(MODEL) OUT=$(OUT)"
+	@echo "Variables of make run: SCENARIO=$(SCENARIO) MODEL=$(MODEL) NODES=$(NODES) OUT=$(OUT)"
+	@echo "                       EXCHANGE_INTERVAL=$(EXCHANGE_INTERVAL) (s; 0 = the scenario's)"
 
 .PHONY: deps
 deps: ## install the missing Debian packages (tools/packages.txt)
@@ -40,8 +43,9 @@ build: deps ## build everything (Release) into build/ and devel/
 	@$(release) $(quietly)
 
 .PHONY: run
-run: build ## run config/scenarios/$(SCENARIO).yaml into $(OUT)
-	@devel/lib/ltd_master/train_sim run config/scenarios/$(SCENARIO).yaml --model $(MODEL) --out $(OUT)
+run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results in $(OUT)
+	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
+	  exchange_interval:=$(EXCHANGE_INTERVAL)
 
 .PHONY: paper
 paper: build ## all three scenarios of the paper x three models; prints its Table 1 and Figure 10 beside ours
@@ -57,6 +61,11 @@ test-sanitize: deps ## the same with the address and undefined-behaviour sanitiz
 	@$(sanitize) $(quietly)
 	@$(sanitize) tests $(quietly)
 	@$(call run_tests,build_sanitize)
+
+.PHONY: test-cluster
+test-cluster: build ## a train over three machines (network namespaces with sshd; needs root)
+	@tools/install_packages.sh packages_cluster.txt
+	@tools/test_cluster.sh
 
 .PHONY: check-deps
 check-deps: ## check who includes whom

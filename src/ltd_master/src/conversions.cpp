@@ -1,6 +1,6 @@
 #include "ltd_master/conversions.h"
 
-#include <fmt/format.h>
+#include <train_brake_msgs/wagon_detail.h>
 
 #include <algorithm>
 
@@ -18,12 +18,6 @@ void Stamp(const TrainRecord& record, Message& message) {
 template <class From, class To>
 void Copy(const From& from, To& to) {
   to.resize(from.size());
-  std::transform(from.begin(), from.end(), to.begin(),
-                 [](auto value) { return static_cast<typename To::value_type>(value); });
-}
-
-template <class From, class To>
-void CopyFixed(const From& from, To& to) {
   std::transform(from.begin(), from.end(), to.begin(),
                  [](auto value) { return static_cast<typename To::value_type>(value); });
 }
@@ -77,26 +71,10 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
              train_brake_msgs::WagonState& message) {
   Stamp(record, message);
   message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
-  CopyFixed(detail.position.x, message.body_x_m);
-  CopyFixed(detail.position.z, message.body_z_m);
-  CopyFixed(detail.position.pitch, message.body_pitch_rad);
-  CopyFixed(detail.velocity.x, message.body_x_mps);
-  CopyFixed(detail.velocity.z, message.body_z_mps);
-  CopyFixed(detail.velocity.pitch, message.body_pitch_radps);
-  CopyFixed(detail.output.normal_force_n, message.wheel_normal_force_n);
-  CopyFixed(detail.output.creepage, message.creepage);
-  CopyFixed(detail.output.creep_force_n, message.creep_force_n);
-  CopyFixed(detail.output.shoe_force_n, message.shoe_force_n);
-  CopyFixed(detail.nest_compression_m, message.spring_deflection_m);
-  CopyFixed(detail.output.wedge_friction_n, message.wedge_force_n);
+  train_brake_msgs::DetailToMessage(detail, message);
   message.front_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle]);
   message.rear_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle + 1]);
   message.cylinder_pressure_pa = static_cast<float>(record.cylinder_pressure_pa[detail.vehicle]);
-}
-
-std::string VehicleName(int vehicle, int vehicles) {
-  const int width = std::max(3, static_cast<int>(std::to_string(vehicles).size()));
-  return fmt::format("wagon_{:0{}d}", vehicle + 1, width);
 }
 
 }  // namespace ltd_master

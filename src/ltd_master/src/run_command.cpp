@@ -26,7 +26,8 @@ LoadedScenario Load(const RunOptions& options) {
   return train_dynamics::config::LoadScenario(options.scenario, overrides);
 }
 
-/// As asked for; else one per core for the 2D model, and one for LTD, whose exchanges are shorter than a wake-up.
+/// As asked for; else one per core for the 2D model, and one for LTD, whose exchanges are shorter than a
+/// wake-up.
 int Threads(const RunOptions& options, const train_dynamics::ScenarioParams& scenario) {
   if (options.threads > 0) return options.threads;
   if (scenario.model != train_dynamics::VehicleModel::kTwoD) return 1;
@@ -39,7 +40,8 @@ int RunScenario(const RunOptions& options) {
   const LoadedScenario scenario = Load(options);
   RunOutput output({options.out, true, options.csv}, options.scenario, scenario.params);
 
-  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, Threads(options, scenario.params));
+  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
+                                              Threads(options, scenario.params));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
   train_dynamics::RunSummary summary(scenario.params, scenario.consist);
   Progress progress(scenario.params.duration_s);
@@ -90,9 +92,9 @@ int CheckScenario(const RunOptions& options) {
   fmt::print("  train      {}: {} vehicles, {:.0f} t, {:.1f} m; {} couplers, {} draw-bars\n", p.train.name,
              consist.vehicles(), 1e-3 * mass, length, consist.connection_type.size() - draw_bars, draw_bars);
   fmt::print("  track      {}\n", p.track.name);
-  fmt::print("  pressures  {}\n", p.pressure_table.empty()
-                                      ? fmt::format("{}, {} driver commands", p.brake->name, p.commands.size())
-                                      : p.pressure_table);
+  fmt::print("  pressures  {}\n", p.pressure_table.empty() ? fmt::format("{}, {} driver commands",
+                                                                         p.brake->name, p.commands.size())
+                                                           : p.pressure_table);
   fmt::print(
       "  run        {:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} "
       "s\n",

@@ -53,7 +53,8 @@ RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_f
   if (folder_.empty()) return;
   for (const std::string& input : {scenario_file, scenario.pressure_table}) {
     if (!input.empty() && FolderOf(input) == fs::weakly_canonical(fs::absolute(folder_))) {
-      throw std::runtime_error(options.folder + " is the folder of " + input + ": choose another for the results");
+      throw std::runtime_error(options.folder + " is the folder of " + input +
+                               ": choose another for the results");
     }
   }
   PrepareFolder(folder_);

@@ -68,7 +68,8 @@ int Main(int argc, char** argv) {
       app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
   AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
   modes->add_flag("--csv", table, "comma-separated, with the shapes");
-  modes->callback([&] { command = [&] { return ltd_master::PrintModes(vehicle, options.overrides, table); }; });
+  modes->callback(
+      [&] { command = [&] { return ltd_master::PrintModes(vehicle, options.overrides, table); }; });
 
   CLI::App* adhesion =
       app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");

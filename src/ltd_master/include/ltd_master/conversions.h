@@ -6,8 +6,7 @@
 #include <train_brake_msgs/TrainState.h>
 #include <train_brake_msgs/WagonState.h>
 
-#include <string>
-
+#include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/train_master.h"
 
 /// From records of the physics to messages. A message keeps its memory from record to record.
@@ -24,7 +23,6 @@ void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::En
 void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
              train_brake_msgs::WagonState& message);
 
-/// "wagon_007" for the vehicle of index 6 in a train of up to 999; wider in longer trains.
-std::string VehicleName(int vehicle, int vehicles);
+using train_dynamics::VehicleName;
 
 }  // namespace ltd_master

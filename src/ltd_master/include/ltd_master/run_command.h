@@ -11,6 +11,7 @@ enum ExitCode {
   kFailure = 1,   ///< a file could not be written, ...
   kBadInput = 2,  ///< arguments or configuration
   kSimulationFault = 3,
+  kRankFailure = 4,   ///< ltd_master: a wagon node is missing, dead, late or refuses
   kInterrupted = 130  ///< Ctrl-C; what was simulated is saved and marked incomplete
 };
 

@@ -10,7 +10,7 @@
 namespace ltd_master {
 
 struct OutputOptions {
-  std::string folder;       ///< empty: nothing is written
+  std::string folder;  ///< empty: nothing is written
   bool record_bag = true;
   bool csv = false;
 };

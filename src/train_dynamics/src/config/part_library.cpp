@@ -81,14 +81,25 @@ NodePtr PartLibrary::Open(const fs::path& file, const KeyPath& path) {
   const std::optional<std::string> text = ReadTextFile(file, YamlLimits::kBytes, errors_);
   if (!text) return nullptr;
   const fs::path folder = Normal(file).parent_path();
-  const auto document = std::make_shared<const Document>(Document{DisplayPath(file), folder, folder});
-  const NodePtr root = ParseYaml(*text, document, path, errors_);
-  if (!root) return nullptr;
-  if (root->kind != Node::Kind::kMap) {
-    root->source.Report(errors_, "", "must hold a map of keys and values, got " + Describe(*root));
+  return cached->second = Parse(*text, {DisplayPath(file), folder, folder}, path);
+}
+
+NodePtr PartLibrary::OpenText(const std::string& text, const std::string& label, const KeyPath& path) {
+  if (text.size() > YamlLimits::kBytes) {
+    errors_.Add(
+        label, 0, path,
+        "has " + std::to_string(text.size()) + " bytes; the limit is " + std::to_string(YamlLimits::kBytes));
     return nullptr;
   }
-  return cached->second = root;
+  if (!IsCleanText(text, label, errors_)) return nullptr;
+  return Parse(text, {label, {}, {}, true, true}, path);
+}
+
+NodePtr PartLibrary::Parse(const std::string& text, Document document, const KeyPath& path) {
+  const NodePtr root = ParseYaml(text, std::make_shared<const Document>(std::move(document)), path, errors_);
+  if (!root || root->kind == Node::Kind::kMap) return root;
+  root->source.Report(errors_, "", "must hold a map of keys and values, got " + Describe(*root));
+  return nullptr;
 }
 
 NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const KeyPath& path,
@@ -115,6 +126,11 @@ NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const
 
 NodePtr PartLibrary::ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
                                       const KeyPath& path, FileChain& chain) {
+  if (reference->source.document->stands_alone) {
+    reference->source.Report(errors_, key,
+                             "must be a map, because no files are read here, got " + Describe(*reference));
+    return nullptr;
+  }
   const auto [located, is_new] = located_.try_emplace(reference);
   if (is_new) located->second = Locate(*reference, key, kind);
   const fs::path& file = located->second;

@@ -302,6 +302,17 @@ Reader::Place Reader::RootPlace(ReadSession& session, const std::string& file, c
   return place;
 }
 
+Reader::Place Reader::TextPlace(ReadSession& session, const std::string& text, const std::string& label) {
+  Place place;
+  const NodePtr root = session.library.OpenText(text, label, place.path);
+  if (!root) return place;
+  place.map = session.library.Resolve(root, "", place.path, place.chain);
+  if (!place.map) return place;
+  place.source = root->source;
+  place.state = Place::State::kMap;
+  return place;
+}
+
 void Reader::ReportUnused(ReadSession& session) {
   // After another error the value may just not have been reached.
   if (!session.errors.empty()) return;

@@ -36,6 +36,16 @@ int ScenarioParams::RecordsPerLedger() const {
   return static_cast<int>(Parts(ledger_interval_s, record_interval_s));
 }
 
+std::vector<int> ScenarioParams::DetailedVehicles() const {
+  std::vector<int> detailed;
+  if (model != VehicleModel::kTwoD) return detailed;
+  const int vehicles = train.VehicleCount();
+  for (int number : detail_vehicles) detailed.push_back(VehicleIndex(number, vehicles));
+  std::sort(detailed.begin(), detailed.end());
+  detailed.erase(std::unique(detailed.begin(), detailed.end()), detailed.end());
+  return detailed;
+}
+
 bool ScenarioParams::Multiple(double whole, double part) {
   const double ratio = whole / part;
   return ratio > 0.5 && ratio < 1e9 &&

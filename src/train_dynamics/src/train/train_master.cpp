@@ -1,24 +1,10 @@
 #include "train_dynamics/train/train_master.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 
 namespace train_dynamics {
-namespace {
-
-/// Indices of the vehicles recorded in full detail, ascending, each once; none in an LTD model.
-std::vector<int> DetailedVehicles(const ScenarioParams& scenario, int vehicles) {
-  std::vector<int> detailed;
-  if (scenario.model != VehicleModel::kTwoD) return detailed;
-  for (int number : scenario.detail_vehicles) detailed.push_back(VehicleIndex(number, vehicles));
-  std::sort(detailed.begin(), detailed.end());
-  detailed.erase(std::unique(detailed.begin(), detailed.end()), detailed.end());
-  return detailed;
-}
-
-}  // namespace
 
 PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
   const auto brake = std::make_shared<const AirBrake>(*scenario.brake, scenario.commands, consist.centre_m);
@@ -33,7 +19,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       pressures_(std::move(pressures)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
-      reply_(consist.vehicles(), DetailedVehicles(scenario, consist.vehicles())),
+      reply_(consist.vehicles(), scenario.DetailedVehicles()),
       acceleration_mps2_(consist.vehicles(), std::numeric_limits<double>::quiet_NaN()) {
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();

@@ -174,7 +174,7 @@ class WagonBlock : public VehicleBlock {
     for (int wheelset = 0; wheelset < kWheelsets; ++wheelset) {
       shoes += out.shoe_force_n[wheelset];
       wheels += out.creep_force_n[wheelset];
-      if (std::abs(out.creepage[wheelset]) > std::abs(creepage)) creepage = out.creepage[wheelset];
+      if (!(std::abs(out.creepage[wheelset]) <= std::abs(creepage))) creepage = out.creepage[wheelset];
     }
     reply.shoe_force_n[at] = shoes;
     reply.wheel_force_n[at] = wheels;

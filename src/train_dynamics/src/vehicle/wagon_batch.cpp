@@ -1,6 +1,7 @@
 #include "train_dynamics/vehicle/wagon_batch.h"
 
 #include <cstring>
+#include <limits>
 
 #include "kernels/wagon_kernel.h"
 
@@ -12,6 +13,16 @@ constexpr int kDouble = sizeof(double);
 template <class Struct>
 constexpr int Fields() {
   return sizeof(Struct) / kDouble;
+}
+
+/// What a wagon shows before its first step.
+WagonOutput<double> NotComputed() {
+  WagonOutput<double> output;
+  for (auto* quantity : {&output.normal_force_n, &output.creepage, &output.creep_force_n,
+                         &output.shoe_force_n, &output.wedge_friction_n}) {
+    quantity->fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  return output;
 }
 
 }  // namespace
@@ -66,7 +77,7 @@ WagonBatch::WagonBatch(const Wagon& wagon, const WagonKernel& kernel,
     const int source = i < size_ ? i : i / kernel.lanes * kernel.lanes;
     Pack(states[source], i, states_);
     Pack(VehicleLoads<double>{}, i, loads_);
-    Pack(WagonOutput<double>{}, i, outputs_);
+    Pack(NotComputed(), i, outputs_);
   }
 }
 

@@ -25,6 +25,8 @@ class PartLibrary {
 
   /// The root of a file, or null after reporting an error. A file is parsed once, however often it is used.
   NodePtr Open(const std::filesystem::path& file, const KeyPath& path);
+  /// The root of a text that refers to no files, or null after reporting an error under `label`.
+  NodePtr OpenText(const std::string& text, const std::string& label, const KeyPath& path);
 
   /// The map that `node` stands for, with its references and bases resolved, or null after reporting an
   /// error.
@@ -34,6 +36,7 @@ class PartLibrary {
   NodePtr Resolve(const NodePtr& node, const std::string& kind, const KeyPath& path, FileChain& chain);
 
  private:
+  NodePtr Parse(const std::string& text, Document document, const KeyPath& path);
   /// @param key  the path of the reference itself: that of the part, or of its base
   NodePtr ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
                            const KeyPath& path, FileChain& chain);

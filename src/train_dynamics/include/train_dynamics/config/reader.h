@@ -99,6 +99,8 @@ class Reader {
  private:
   template <class Struct>
   friend Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors);
+  template <class Struct>
+  friend Struct LoadText(const std::string& text, const std::string& label, ErrorList& errors);
 
   /// A map to read a struct from, or why there is none.
   struct Place {
@@ -122,6 +124,7 @@ class Reader {
   Reader(ReadSession& session, const Place& place);
 
   static Place RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options);
+  static Place TextPlace(ReadSession& session, const std::string& text, const std::string& label);
   static void ReportUnused(ReadSession& session);
 
   Value Find(const char* key);
@@ -204,6 +207,22 @@ Struct Load(const std::string& file, const LoadOptions& options, ErrorList& erro
   value.Visit(reader);
   reader.Finish();
   Reader::ReportUnused(session);
+  return value;
+}
+
+/// Reads a struct from YAML text that stands alone, such as Write gives: parts are maps, not names or files.
+///
+/// @param label   what messages name instead of a file
+/// @param errors  as above
+template <class Struct>
+Struct LoadText(const std::string& text, const std::string& label, ErrorList& errors) {
+  Struct value;
+  ReadSession session{errors, PartLibrary({}, errors), Overrides({}, {}, "", errors)};
+  const Reader::Place root = Reader::TextPlace(session, text, label);
+  if (root.state != Reader::Place::State::kMap) return value;
+  Reader reader(session, root);
+  value.Visit(reader);
+  reader.Finish();
   return value;
 }
 

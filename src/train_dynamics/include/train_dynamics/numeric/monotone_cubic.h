@@ -4,7 +4,8 @@
 
 namespace train_dynamics {
 
-/// Value at `at` of the monotone cubic (Fritsch-Carlson) through the points: smooth, without overshoot.
+/// Value at `at` of the monotone cubic (slopes of Fritsch and Butland) through the points: smooth, without
+/// overshoot.
 ///
 /// @param x   at least 4 ascending abscissae
 /// @param y   as many ordinates

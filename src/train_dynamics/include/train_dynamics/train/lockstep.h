@@ -107,4 +107,8 @@ class Digest {
   std::uint64_t state_ = 0x9e3779b97f4a7c15u;
 };
 
+/// Digest of a text: its length, then its bytes, eight to a word (the first lowest), the last word padded
+/// with zeros.
+std::uint64_t TextDigest(const std::string& text);
+
 }  // namespace train_dynamics

@@ -88,6 +88,8 @@ struct ScenarioParams {
   long Exchanges() const;
   int ExchangesPerRecord() const;
   int RecordsPerLedger() const;
+  /// Indices of the vehicles recorded in full detail, ascending, each once; none in an LTD model.
+  std::vector<int> DetailedVehicles() const;
   double InitialSpeed() const { return initial_speed_kmh / 3.6; }  ///< [m/s]
 
  private:

@@ -36,10 +36,12 @@ struct SlipSolution {
 
 /// Solves w + h F(w) = w0 by Newton's method.
 ///
-/// F rises from 0 with falling slope to at most N mu0, so that w lies above both w0 / (1 + h F'(0)) and w0 -
-/// h N mu0. From the larger bound Newton's iterates climb monotonically; three leave less than 50 N of error
-/// everywhere that matters (test). The force returned is (w0 - w) / h: whatever error is left in w, momentum
-/// and energy are exact.
+/// F rises from 0 to at most N mu0 and its slope falls, so that w lies above both w0 / (1 + h F'(0)) and w0 -
+/// h N mu0: from the larger bound Newton's iterates climb monotonically. (With friction that falls over the
+/// slip speed the slope may turn negative, h |F'| < 0.1: the iterates are held between the bounds.) Three of
+/// them leave an error in F of 1e-6 N mu0 while less than half of the friction is in use, 3e-4 N mu0 up to
+/// three quarters, and at most 1.6 % of N mu0 close to full sliding below 2 m/s, always towards too much
+/// force. The force returned is (w0 - w) / h: whatever error is left in w, momentum and energy are exact.
 template <class T>
 SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
   constexpr double kTwoOverPi = 0.63661977236758134308;
@@ -64,8 +66,9 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
 ///   omega1 = omega + dt (T_t + r F(w1) - T) / J
 ///
 /// T = +-T_max while the wheels turn. Where that would turn them backwards they stop: omega1 = 0, and T is
-/// what holds them, |T| <= T_max. The creep law is stiff, F'(w) dt (1/m + r^2/J) is 40 (m/s) / v at 1 ms:
-/// hence implicit. A step of explicit form lets the force jump between branches at all speeds of a train.
+/// what holds them, |T| <= T_max. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
+/// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
+/// the train's speed does not betray.
 template <class T>
 RollingResult<T> StepRolling(const RollingInertia& inertia, const CreepLaw<T>& law, const RollingInput<T>& in,
                              double dt) {

@@ -28,7 +28,7 @@ inline constexpr std::array<const char*, kDissipations> kDissipationNames = {
 /// Work done on and by a vehicle since the start [J].
 template <class T>
 struct VehicleWork {
-  std::array<T, kDissipations> dissipated{};  ///< by element, >= 0
+  std::array<T, kDissipations> dissipated{};  ///< by element, >= 0 but for the noise of wedges at rest
   T gravity{};                                ///< done on the vehicle by the grade
   T traction{};                               ///< done on the vehicle by its traction force
 };

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/train/ranks.h"
+
+namespace ltd_master {
+
+/// A rank that did not come up, died, was late, refused a request or replied nonsense. The run cannot go on.
+///
+/// what() names the rank, its vehicles and the exchange.
+class RankFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  /// @param when  "exchange 17"
+  RankFailure(const train_dynamics::Rank& rank, const std::string& when, const std::string& what);
+};
+
+/// The end of a wait that somebody asked for. What was waited for has not come.
+class WaitInterrupted : public std::runtime_error {
+ public:
+  WaitInterrupted() : std::runtime_error("interrupted while waiting for wagon nodes") {}
+};
+
+/// The chosen ranks with their vehicles, the first few of them: "/train/wagon_007 (vehicles 7-12), ...".
+std::string NamesOf(const std::vector<train_dynamics::Rank>& ranks, const std::vector<bool>& chosen);
+
+/// Patience with ranks: warns when a wait takes 1, 3 and 10 s, naming those who are late, and ends it at the
+/// deadline.
+class LateWatch {
+ public:
+  /// @param when         what is waited for, "exchange 17"
+  /// @param deadline_s   [wall time] 0: none
+  /// @param interrupted  true ends the wait
+  LateWatch(const std::vector<train_dynamics::Rank>& ranks, std::string when, double deadline_s,
+            const std::function<bool()>& interrupted);
+
+  /// For how long to wait before looking at the watch [s].
+  static constexpr double kGlance = 0.1;
+
+  /// Looks at the watch.
+  /// @param pending  [rank] whether it is still waited for
+  /// @throws WaitInterrupted, and RankFailure after the deadline
+  void Look(const std::vector<bool>& pending);
+
+  /// A rank has died: gives an interruption, which may have hit that rank first, a second to come in.
+  /// @throws WaitInterrupted, RankFailure
+  [[noreturn]] void GiveUp(int rank, const std::string& what) const;
+
+  bool was_late() const { return stage_ > 0; }  ///< whether it has warned
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const std::vector<train_dynamics::Rank>& ranks_;
+  const std::string when_;
+  const double deadline_s_;
+  const std::function<bool()>& interrupted_;
+  const Clock::time_point start_ = Clock::now();
+  std::size_t stage_ = 0;
+};
+
+}  // namespace ltd_master

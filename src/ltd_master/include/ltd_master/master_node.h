@@ -1,0 +1,85 @@
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <train_brake_msgs/StepExchanges.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ltd_master/conversions.h"
+#include "ltd_master/exchange_statistics.h"
+#include "ltd_master/progress.h"
+#include "ltd_master/ros_transport.h"
+#include "ltd_master/run_control.h"
+#include "ltd_master/run_output.h"
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/train/run_summary.h"
+
+namespace ltd_master {
+
+/// The private parameters of the node; launch/train.launch documents them.
+struct MasterOptions {
+  std::string scenario;
+  int vehicles = 0;  ///< that the launch file expects in the train; 0 = any number
+  int ranks = 0;     ///< wagon nodes; 0 = the vehicles are in the master's own process
+  std::vector<std::string> overrides;
+  OutputOptions output;
+  double real_time_factor = 0.0;
+  bool start_paused = false;
+  double startup_timeout_s = 60.0;
+  double exchange_timeout_s = 30.0;
+  int blocking_threads = 0;  ///< 0 = asynchronous fan-out
+  std::string exit_status_file;
+
+  /// @throws std::invalid_argument naming the parameter
+  static MasterOptions FromParameters(const ros::NodeHandle& parameters);
+};
+
+/// The master of a train as a ROS node: runs it once, publishes and records it, and can be paused.
+///
+///   publishes   state  in_train_forces  brake_pressures  energy_ledger  (every record)   /clock /diagnostics
+///   services    ~pause  ~resume  ~step
+class MasterNode {
+ public:
+  MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own);
+
+  /// From time 0 to the end. @return the process's exit code
+  int Run();
+
+ private:
+  std::unique_ptr<train_dynamics::Transport> MakeTransport();
+  void Loop(train_dynamics::TrainMaster& master);
+  void Publish(const train_dynamics::TrainRecord& record);
+  void PublishClock(double simulated_s);
+  void PublishDiagnostics(const train_dynamics::TrainMaster& master, const char* state);
+  bool OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+  bool OnResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
+  bool OnStep(train_brake_msgs::StepExchanges::Request& request,
+              train_brake_msgs::StepExchanges::Response& response);
+
+  MasterOptions options_;
+  train_dynamics::config::LoadedScenario scenario_;
+  RunControl control_;
+  RosTransport* ranks_ = nullptr;  ///< null: no wagon nodes
+  ExchangeStatistics statistics_;
+  std::vector<unsigned> last_count_;  ///< [rank] how often it replied last
+  unsigned late_exchanges_ = 0;
+  double initial_energy_j_ = 0.0;
+  double real_time_factor_ = 0.0;  ///< over the last second of wall time
+  std::atomic<double> simulated_s_{0.0};
+
+  ros::Publisher state_publisher_, forces_publisher_, pressures_publisher_, ledger_publisher_,
+      clock_publisher_, diagnostics_publisher_;
+  std::vector<ros::ServiceServer> services_;
+  train_brake_msgs::TrainState state_;
+  train_brake_msgs::InTrainForces forces_;
+  train_brake_msgs::BrakePressures pressures_;
+  train_brake_msgs::EnergyLedger ledger_;
+};
+
+}  // namespace ltd_master

@@ -1,0 +1,44 @@
+#include <exception>
+#include <string>
+
+#include "ltd_master/interrupt.h"
+#include "ltd_master/master_node.h"
+#include "ltd_master/run_command.h"
+#include "train_dynamics/config/error_list.h"
+
+namespace {
+
+int Run(const ltd_master::MasterOptions& options) {
+  ltd_master::MasterNode master(options, ros::NodeHandle(), ros::NodeHandle("~"));
+  return master.Run();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "ltd_master", ros::init_options::NoSigintHandler);
+  ltd_master::CatchInterrupts();
+  int exit_code = ltd_master::kFailure;
+  std::string exit_status_file;
+  try {
+    const auto options = ltd_master::MasterOptions::FromParameters(ros::NodeHandle("~"));
+    exit_status_file = options.exit_status_file;
+    exit_code = Run(options);
+  } catch (const train_dynamics::config::Error& e) {
+    ROS_FATAL("bad configuration:\n%s", e.what());
+    exit_code = ltd_master::kBadInput;
+  } catch (const std::invalid_argument& e) {
+    ROS_FATAL("%s", e.what());
+    exit_code = ltd_master::kBadInput;
+  } catch (const std::exception& e) {
+    ROS_FATAL("%s", e.what());
+  }
+  if (!exit_status_file.empty()) {
+    try {
+      ltd_master::WriteFile(exit_status_file, std::to_string(exit_code) + "\n");
+    } catch (const std::exception& e) {
+      ROS_FATAL("%s", e.what());
+    }
+  }
+  return exit_code;
+}

@@ -1,0 +1,296 @@
+#include "ltd_master/master_node.h"
+
+#include <fmt/format.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+#include "ltd_master/interrupt.h"
+#include "ltd_master/run_command.h"
+#include "train_dynamics/config/writer.h"
+#include "train_dynamics/train/in_process_train.h"
+#include "train_dynamics/train/ranks.h"
+
+namespace ltd_master {
+namespace {
+
+using train_dynamics::TrainMaster;
+using train_dynamics::TrainRecord;
+
+bool Ending() { return Interrupt() != 0 || !ros::ok(); }
+
+std::vector<std::string> Words(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// Unlike that of any other run, so that what a late process of another one sends can be told apart.
+std::uint64_t NewRunId() {
+  std::random_device random;
+  return (static_cast<std::uint64_t>(random()) << 32 | random()) | 1u;
+}
+
+double NonNegative(const ros::NodeHandle& parameters, const std::string& name, double fallback) {
+  const double value = parameters.param(name, fallback);
+  if (!(value >= 0.0))
+    throw std::invalid_argument(fmt::format("parameter {} must be >= 0, got {}", name, value));
+  return value;
+}
+
+}  // namespace
+
+MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
+  MasterOptions options;
+  if (!parameters.getParam("scenario", options.scenario)) {
+    throw std::invalid_argument("parameter scenario is missing: the scenario file to run");
+  }
+  options.vehicles = parameters.param("vehicles", 0);
+  options.ranks = parameters.param("ranks", 0);
+  options.overrides = Words(parameters.param<std::string>("set", ""));
+  const std::string model = parameters.param<std::string>("model", "");
+  if (!model.empty()) options.overrides.push_back("model=" + model);
+  const double interval_s = NonNegative(parameters, "exchange_interval_s", 0.0);
+  if (interval_s > 0.0) options.overrides.push_back(fmt::format("exchange_interval_s={}", interval_s));
+  const std::vector<std::string> detail = Words(parameters.param<std::string>("detail", ""));
+  if (!detail.empty())
+    options.overrides.push_back(fmt::format("detail_vehicles=[{}]", fmt::join(detail, ", ")));
+  options.output.folder = parameters.param<std::string>("out", "");
+  options.output.record_bag = parameters.param("record", true);
+  options.real_time_factor = NonNegative(parameters, "real_time_factor", 0.0);
+  options.start_paused = parameters.param("start_paused", false);
+  options.startup_timeout_s = NonNegative(parameters, "startup_timeout_s", 60.0);
+  options.exchange_timeout_s = NonNegative(parameters, "exchange_timeout_s", 30.0);
+  const std::string client = parameters.param<std::string>("client", "fan_out");
+  if (client != "fan_out" && client != "blocking") {
+    throw std::invalid_argument("parameter client must be fan_out or blocking, got " + client);
+  }
+  constexpr int kBlockingThreads = 16;
+  options.blocking_threads = client == "blocking" ? kBlockingThreads : 0;
+  options.exit_status_file = parameters.param<std::string>("exit_status_file", "");
+  return options;
+}
+
+MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own)
+    : options_(options),
+      scenario_(train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
+      control_(options.start_paused) {
+  const int vehicles = scenario_.consist.vehicles();
+  if (options.vehicles != 0 && options.vehicles != vehicles) {
+    throw std::invalid_argument(
+        fmt::format("the launch file expects {} vehicles, but the train of {} has {}: launch "
+                    "with vehicles:={}",
+                    options.vehicles, options.scenario, vehicles, vehicles));
+  }
+  if (options.ranks < 0 || options.ranks > vehicles) {
+    throw std::invalid_argument(fmt::format(
+        "parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
+  }
+  constexpr int kQueue = 100;  // one second of simulated time
+  state_publisher_ = node.advertise<train_brake_msgs::TrainState>("state", kQueue);
+  forces_publisher_ = node.advertise<train_brake_msgs::InTrainForces>("in_train_forces", kQueue);
+  pressures_publisher_ = node.advertise<train_brake_msgs::BrakePressures>("brake_pressures", kQueue);
+  ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
+  clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
+  diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
+  services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
+  services_.push_back(own.advertiseService("resume", &MasterNode::OnResume, this));
+  services_.push_back(own.advertiseService("step", &MasterNode::OnStep, this));
+}
+
+std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
+  const train_dynamics::ScenarioParams& scenario = scenario_.params;
+  if (options_.ranks == 0) {
+    return std::make_unique<train_dynamics::InProcessTransport>(scenario, scenario_.consist, 1);
+  }
+  RosTransportOptions transport;
+  transport.start_timeout_s = options_.startup_timeout_s;
+  transport.exchange_deadline_s = options_.exchange_timeout_s;
+  transport.blocking_threads = options_.blocking_threads;
+  transport.interrupted = Ending;
+  auto ranks =
+      std::make_unique<RosTransport>(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks),
+                                     NewRunId(), train_dynamics::config::Write(scenario), transport);
+  ranks_ = ranks.get();
+  last_count_.assign(ranks->ranks().size(), 0);
+  return ranks;
+}
+
+int MasterNode::Run() {
+  const train_dynamics::ScenarioParams& scenario = scenario_.params;
+  RunOutput output(options_.output, options_.scenario, scenario);
+  const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
+  TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
+  train_dynamics::RunSummary summary(scenario, scenario_.consist);
+  std::unique_ptr<Progress> progress;
+  master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
+  master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
+  master.AddObserver([&](const TrainRecord& record) { Publish(record); });
+  master.AddObserver([&](const TrainRecord& record) {
+    if (progress == nullptr)
+      progress = std::make_unique<Progress>(scenario.duration_s);  // the start-up is over
+    progress->Show(record.time_s, summary.MeanSpeed());
+  });
+
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  std::string fault;
+  int exit_code = kSuccess;
+  try {
+    Loop(master);
+    if (!master.Done()) exit_code = kInterrupted;
+  } catch (const train_dynamics::SimulationFault& e) {
+    fault = e.what();
+    exit_code = kSimulationFault;
+  } catch (const WaitInterrupted&) {
+    exit_code = kInterrupted;
+  } catch (const RankFailure& e) {
+    // When a launch is ended, wagon nodes may leave before the master hears of it.
+    ros::WallDuration(0.5).sleep();
+    exit_code = Ending() ? kInterrupted : kRankFailure;
+    fault = e.what();
+  }
+  control_.End();
+  spinner.stop();
+
+  const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
+  const std::string json = summary.Json(master, wall_s, exit_code == kInterrupted ? "" : fault);
+  output.Finish(master, json);
+  PublishDiagnostics(master, exit_code == kSuccess ? "complete" : "ended early");
+  fmt::print("{}", json);
+  std::fflush(stdout);
+  if (exit_code == kInterrupted) {
+    ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
+  } else if (!fault.empty()) {
+    ROS_FATAL("the run broke down: %s", fault.c_str());
+  }
+  return exit_code;
+}
+
+void MasterNode::Loop(TrainMaster& master) {
+  using Clock = std::chrono::steady_clock;
+  Pacer pacer(options_.real_time_factor);
+  master.Start();
+  Clock::time_point last_diagnostics = Clock::now();
+  double simulated_then_s = 0.0;
+  bool was_waiting = false;
+  while (!master.Done() && !Ending()) {
+    const bool admitted = control_.Admit();
+    if (admitted) {
+      if (was_waiting) pacer.Restart(master.time_s());
+      pacer.Wait(master.time_s());
+      const Clock::time_point begin = Clock::now();
+      master.Exchange();
+      statistics_.Add(std::chrono::duration<double>(Clock::now() - begin).count());
+      if (ranks_ != nullptr) {
+        ++last_count_[ranks_->timing().last_rank];
+        if (ranks_->timing().was_late) ++late_exchanges_;
+      }
+      simulated_s_ = master.time_s();
+      control_.Completed();
+    }
+    was_waiting = !admitted;
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
+    if (elapsed_s >= 1.0) {
+      real_time_factor_ = (master.time_s() - simulated_then_s) / elapsed_s;
+      PublishDiagnostics(master, admitted ? "running" : "paused");
+      simulated_then_s = master.time_s();
+      last_diagnostics = Clock::now();
+    }
+  }
+}
+
+void MasterNode::Publish(const TrainRecord& record) {
+  PublishClock(record.time_s);
+  if (state_publisher_.getNumSubscribers() > 0) {
+    Convert(record, state_);
+    state_publisher_.publish(state_);
+  }
+  if (forces_publisher_.getNumSubscribers() > 0) {
+    Convert(record, forces_);
+    forces_publisher_.publish(forces_);
+  }
+  if (pressures_publisher_.getNumSubscribers() > 0) {
+    Convert(record, pressures_);
+    pressures_publisher_.publish(pressures_);
+  }
+  if (record.ledger != nullptr) {
+    if (record.exchange == 0) initial_energy_j_ = record.ledger->Stored();
+    Convert(record, *record.ledger, initial_energy_j_, ledger_);
+    ledger_publisher_.publish(ledger_);
+  }
+}
+
+void MasterNode::PublishClock(double simulated_s) {
+  // /clock at 100 Hz of simulated time, however often records are made.
+  constexpr double kPeriod = 0.01;
+  const double tick = simulated_s / kPeriod;
+  if (std::abs(tick - std::round(tick)) > 1e-6 * std::max(1.0, tick)) return;
+  rosgraph_msgs::Clock clock;
+  clock.clock.fromSec(simulated_s);
+  clock_publisher_.publish(clock);
+}
+
+void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state) {
+  diagnostic_msgs::DiagnosticArray array;
+  array.header.stamp.fromSec(master.time_s());
+  diagnostic_msgs::DiagnosticStatus status;
+  status.level =
+      late_exchanges_ > 0 ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK;
+  status.name = ros::this_node::getName() + ": lockstep";
+  status.hardware_id = scenario_.params.name;
+  status.message = state;
+  const auto add = [&status](const char* key, const std::string& value) {
+    diagnostic_msgs::KeyValue pair;
+    pair.key = key;
+    pair.value = value;
+    status.values.push_back(pair);
+  };
+  add("simulated_s", fmt::format("{:.3f}", master.time_s()));
+  add("real_time_factor", fmt::format("{:.2f}", real_time_factor_));
+  add("exchange_p50_ms", fmt::format("{:.3f}", 1e3 * statistics_.Quantile(0.50)));
+  add("exchange_p99_ms", fmt::format("{:.3f}", 1e3 * statistics_.Quantile(0.99)));
+  if (ranks_ != nullptr) {
+    const auto slowest = std::max_element(last_count_.begin(), last_count_.end()) - last_count_.begin();
+    add("ranks", std::to_string(last_count_.size()));
+    add("slowest_rank", ranks_->ranks()[slowest].name);
+    add("deadline_warnings", std::to_string(late_exchanges_));
+  }
+  array.status.push_back(status);
+  diagnostics_publisher_.publish(array);
+}
+
+bool MasterNode::OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  control_.Pause();
+  response.success = true;
+  response.message = fmt::format("paused near {:.3f} s", simulated_s_.load());
+  return true;
+}
+
+bool MasterNode::OnResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = control_.paused();
+  response.message = response.success ? "resumed" : "the train is not paused";
+  control_.Resume();
+  return true;
+}
+
+bool MasterNode::OnStep(train_brake_msgs::StepExchanges::Request& request,
+                        train_brake_msgs::StepExchanges::Response& response) {
+  if (request.exchanges == 0) {
+    response.message = "exchanges must be >= 1, got 0";
+  } else {
+    response.success = control_.Step(request.exchanges);
+    if (!response.success) response.message = "the train is not paused, or the run has ended";
+  }
+  response.simulated_s = simulated_s_;
+  return true;
+}
+
+}  // namespace ltd_master

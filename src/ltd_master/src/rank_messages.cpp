@@ -1,0 +1,156 @@
+#include "ltd_master/rank_messages.h"
+
+#include <fmt/format.h>
+#include <train_brake_msgs/wagon_detail.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ltd_master/late_watch.h"
+
+namespace ltd_master {
+namespace {
+
+using train_dynamics::ExchangeReply;
+using train_dynamics::ExchangeRequest;
+using train_dynamics::Rank;
+
+/// Copies arrays of a rank's reply to their places in those of the whole train.
+class Unpacker {
+ public:
+  Unpacker(const Rank& rank, const std::string& when) : rank_(rank), when_(when) {}
+
+  template <class From, class To>
+  void Copy(const char* name, const From& from, To& to) const {
+    CheckSize(name, from.size(), static_cast<std::size_t>(rank_.count));
+    std::copy(from.begin(), from.end(), to.begin() + rank_.first);
+  }
+
+  void CopyFinite(const char* name, const std::vector<double>& from, std::vector<double>& to) const {
+    Copy(name, from, to);
+    const auto wrong =
+        std::find_if(from.begin(), from.end(), [](double value) { return !std::isfinite(value); });
+    if (wrong != from.end()) {
+      Fail(fmt::format("replied {} = {} for vehicle {}", name, *wrong,
+                       rank_.first + 1 + (wrong - from.begin())));
+    }
+  }
+
+  void Record(const train_brake_msgs::RankRecord& record, ExchangeReply& reply) const {
+    Copy("position_m", record.position_m, reply.position_m);
+    Copy("speed_mps", record.speed_mps, reply.speed_mps);
+    Copy("shoe_force_n", record.shoe_force_n, reply.shoe_force_n);
+    Copy("wheel_force_n", record.wheel_force_n, reply.wheel_force_n);
+    Copy("creepage", record.creepage, reply.creepage);
+    Copy("state_digest", record.state_digest, reply.state_digest);
+    auto from = record.details.begin();
+    for (train_dynamics::WagonDetail& detail : reply.details) {
+      if (detail.vehicle < rank_.first || detail.vehicle >= rank_.first + rank_.count) continue;
+      if (from == record.details.end() || static_cast<int>(from->vehicle) != detail.vehicle + 1) {
+        Fail(fmt::format("replied no details of vehicle {}", detail.vehicle + 1));
+      }
+      train_brake_msgs::MessageToDetail(*from++, detail);
+    }
+  }
+
+  void Energies(const train_brake_msgs::RankRecord& record, ExchangeReply& reply) const {
+    const auto count = static_cast<std::size_t>(rank_.count);
+    CheckSize("kinetic_j", record.kinetic_j.size(), count);
+    CheckSize("potential_j", record.potential_j.size(), count);
+    CheckSize("gravity_work_j", record.gravity_work_j.size(), count);
+    CheckSize("traction_work_j", record.traction_work_j.size(), count);
+    CheckSize("dissipated_j", record.dissipated_j.size(), count * train_dynamics::kDissipations);
+    auto dissipated = record.dissipated_j.begin();
+    for (std::size_t i = 0; i < count; ++i) {
+      train_dynamics::VehicleEnergy& energy = reply.energy[rank_.first + i];
+      energy.kinetic = record.kinetic_j[i];
+      energy.potential = record.potential_j[i];
+      energy.work.gravity = record.gravity_work_j[i];
+      energy.work.traction = record.traction_work_j[i];
+      for (double& element : energy.work.dissipated) element = *dissipated++;
+    }
+  }
+
+  [[noreturn]] void Fail(const std::string& what) const { throw RankFailure(rank_, when_, what); }
+
+ private:
+  void CheckSize(const char* name, std::size_t size, std::size_t expected) const {
+    if (size != expected) {
+      Fail(fmt::format("replied {} values of {}, {} are expected", size, name, expected));
+    }
+  }
+
+  const Rank& rank_;
+  const std::string& when_;
+};
+
+}  // namespace
+
+std::string ExchangeText(std::uint64_t exchange) { return fmt::format("exchange {}", exchange); }
+
+RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
+                           const std::string& scenario_text)
+    : configure(ranks.size()), step(ranks.size()), ranks_(ranks) {
+  const std::uint64_t digest = train_dynamics::TextDigest(scenario_text);
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    train_brake_msgs::ConfigureRequest& request = configure[i].request;
+    request.protocol_version = train_brake_msgs::ConfigureRequest::PROTOCOL_VERSION;
+    request.run_id = run_id;
+    request.first_vehicle = static_cast<std::uint32_t>(ranks[i].first + 1);
+    request.vehicle_count = static_cast<std::uint32_t>(ranks[i].count);
+    request.scenario = scenario_text;
+    request.scenario_digest = digest;
+    step[i].request.run_id = run_id;
+  }
+}
+
+void RankMessages::Unpack(ExchangeReply& reply) const {
+  const std::string when = kConfiguration;
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    const train_brake_msgs::ConfigureResponse& response = configure[i].response;
+    const Unpacker unpacker(ranks_[i], when);
+    if (!response.ok) unpacker.Fail(response.message);
+    unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
+    unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
+    unpacker.Record(response.record, reply);
+    unpacker.Energies(response.record, reply);
+  }
+}
+
+void RankMessages::Pack(const ExchangeRequest& whole) {
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    train_brake_msgs::StepRequest& request = step[i].request;
+    const auto force = whole.coupler_force_n.begin() + ranks_[i].first;
+    const auto pressure = whole.cylinder_pressure_pa.begin() + ranks_[i].first;
+    request.exchange = whole.exchange;
+    request.dt_s = whole.dt_s;
+    request.steps = static_cast<std::uint32_t>(whole.steps);
+    request.record = whole.record;
+    request.ledger = whole.ledger;
+    request.coupler_force_n.assign(force, force + ranks_[i].count + 1);
+    request.cylinder_pressure_pa.assign(pressure, pressure + ranks_[i].count);
+  }
+}
+
+void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
+  const std::string when = ExchangeText(whole.exchange);
+  reply.fault = {};
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    const train_brake_msgs::StepResponse& response = step[i].response;
+    const Unpacker unpacker(ranks_[i], when);
+    if (!response.ok) unpacker.Fail(response.message);
+    if (response.exchange != whole.exchange) {
+      unpacker.Fail(fmt::format("replied to exchange {}", response.exchange));
+    }
+    if (response.fault_vehicle != 0) {
+      reply.fault = {static_cast<int>(response.fault_vehicle) - 1, response.fault};
+      return;
+    }
+    unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
+    unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
+    if (whole.record) unpacker.Record(response.record, reply);
+    if (whole.ledger) unpacker.Energies(response.record, reply);
+  }
+}
+
+}  // namespace ltd_master

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "train_dynamics/train/vehicle_block.h"
+
+namespace train_dynamics {
+
+class ThreadTeam;
+
+/// A block whose vehicles are shared out over a fixed number of threads, in smaller blocks.
+///
+/// The same bits for any number of threads: a vehicle's step depends on nothing but its own state and loads.
+class ThreadedBlock : public VehicleBlock {
+ public:
+  /// The vehicles [first, first + count) of a scenario's train at their start state.
+  /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
+  ThreadedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count, int threads);
+  ~ThreadedBlock() override;
+
+  bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override;
+  void Report(int offset, bool with_energy, ExchangeReply& reply) const override;
+  VehicleFault FindFault() const override;
+
+ private:
+  struct Share {
+    int first;  ///< within the whole block
+    std::unique_ptr<VehicleBlock> block;
+    bool sound = true;
+  };
+  std::vector<Share> shares_;  ///< [thread]
+  std::unique_ptr<ThreadTeam> team_;
+};
+
+}  // namespace train_dynamics

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/service_server.h>
+#include <train_brake_msgs/Configure.h>
+#include <train_brake_msgs/Step.h>
+
+#include <boost/weak_ptr.hpp>
+#include <chrono>
+#include <map>
+#include <mutex>
+
+#include "wagon_node/inline_callback_queue.h"
+#include "wagon_node/wagon_server.h"
+
+namespace wagon_node {
+
+/// A process of the distributed train. Which vehicles it hosts, it learns from the train's master.
+///
+///   services    ~configure, ~step           see Configure.srv, Step.srv
+///   publishes   wagon_NNN/state             in the node's namespace: its vehicles in full detail, every
+///   record parameters  ~threads                    default 1
+///               ~master_timeout_s           default 8: leave after so long without a master; 0: never
+///
+/// A master is there as long as the connection over which it configured this node is open, which costs
+/// nothing to watch and also holds for a master that is paused, stopped in a debugger or slow. A node that
+/// has not been configured goes by the ROS master instead. A request that is not refused counts as a sign of
+/// life, too.
+class WagonNode {
+ public:
+  WagonNode();
+  /// Serves until the node is shut down or has been left alone.
+  void Run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using ConfigureCall =
+      ros::ServiceSpecCallParams<train_brake_msgs::ConfigureRequest, train_brake_msgs::ConfigureResponse>;
+
+  /// The callback of ~configure is also given the connection it came over.
+  struct ConfigureSpec {
+    using RequestType = train_brake_msgs::ConfigureRequest;
+    using ResponseType = train_brake_msgs::ConfigureResponse;
+    using RequestPtr = boost::shared_ptr<RequestType>;
+    using ResponsePtr = boost::shared_ptr<ResponseType>;
+    using CallbackType = boost::function<bool(ConfigureCall&)>;
+    static bool call(const CallbackType& callback, ConfigureCall& params) { return callback(params); }
+  };
+
+  bool Configure(ConfigureCall& call);
+  bool Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response);
+  void Publish(const train_brake_msgs::RankRecord& record);
+  bool IsLeftAlone();
+
+  InlineCallbackQueue queue_;
+  ros::NodeHandle node_, private_;
+  std::mutex mutex_;  ///< of what both roscpp's thread, which runs the callbacks, and Run() use
+  WagonServer server_;
+  boost::weak_ptr<ros::M_string> session_;  ///< header of the connection that configured the present run
+  Clock::time_point last_contact_;
+  Clock::time_point next_question_;  ///< to the ROS master
+  std::chrono::duration<double> timeout_;
+  std::map<std::uint32_t, ros::Publisher> publishers_;  ///< by vehicle
+  ros::ServiceServer configure_, step_;
+};
+
+}  // namespace wagon_node

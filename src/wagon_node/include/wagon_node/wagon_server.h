@@ -1,0 +1,54 @@
+#pragma once
+
+#include <train_brake_msgs/Configure.h>
+#include <train_brake_msgs/Step.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace wagon_node {
+
+/// What a wagon node does with the requests of Configure.srv and Step.srv: checks all of them, lets its
+/// vehicles move, keeps the last reply. Knows the messages, but neither sockets nor nodes.
+///
+///   request     | no run yet     | run A, whose next exchange is k           | from another run
+///   ------------+----------------+-------------------------------------------+-------------------------------
+///   Configure   | starts the run | k = 0: starts again; k > 0: refused       | refused while run A is
+///   driven,
+///               |                |                                           | else starts the other run
+///   Step k      | refused        | moves the vehicles                        | refused
+///   Step k - 1  | refused        | the same reply again, nothing moves       | refused
+///   other Step  | refused        | refused, with both numbers                | refused
+///
+/// A refusal is a reply with ok = false and a message for people; it leaves the run and its vehicles as they
+/// are. What else is refused, and in which order, is in the services' comments.
+class WagonServer {
+ public:
+  /// @param threads  that share the vehicles; any number gives the same bits
+  explicit WagonServer(int threads);
+  ~WagonServer();
+
+  /// @param driven  whether another node drives the present run: the connection that configured it is open
+  void Configure(const train_brake_msgs::ConfigureRequest& request, bool driven,
+                 train_brake_msgs::ConfigureResponse& response);
+
+  /// @return valid until the next call
+  const train_brake_msgs::StepResponse& Step(const train_brake_msgs::StepRequest& request);
+
+  std::uint64_t run_id() const;   ///< 0: no run yet
+  int vehicles_in_train() const;  ///< of the run
+
+ private:
+  struct Run;
+
+  std::unique_ptr<Run> Begin(const train_brake_msgs::ConfigureRequest& request, bool driven,
+                             std::uint64_t digest) const;
+  std::string WhyNot(const train_brake_msgs::StepRequest& request) const;
+
+  const int threads_;
+  std::unique_ptr<Run> run_;
+  train_brake_msgs::StepResponse refusal_;
+};
+
+}  // namespace wagon_node

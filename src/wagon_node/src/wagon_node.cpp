@@ -1,0 +1,103 @@
+#include "wagon_node/wagon_node.h"
+
+#include <ros/ros.h>
+
+#include "train_dynamics/train/ranks.h"
+
+namespace wagon_node {
+namespace {
+
+constexpr double kTick = 0.25;              // [s] between two looks at whether there is a master
+constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that waits for its first run
+
+std::string CallerOf(const ros::M_string& connection_header) {
+  const auto caller = connection_header.find("callerid");
+  return caller == connection_header.end() ? "somebody" : caller->second;
+}
+
+}  // namespace
+
+WagonNode::WagonNode()
+    : private_("~"),
+      server_(private_.param("threads", 1)),
+      last_contact_(Clock::now()),
+      next_question_(last_contact_),
+      timeout_(private_.param("master_timeout_s", 8.0)) {
+  ros::AdvertiseServiceOptions configure;
+  configure.initBySpecType<ConfigureSpec>("configure",
+                                          [this](ConfigureCall& call) { return Configure(call); });
+  configure.callback_queue = &queue_;
+  configure_ = private_.advertiseService(configure);
+
+  ros::AdvertiseServiceOptions step;
+  step.init<train_brake_msgs::StepRequest, train_brake_msgs::StepResponse>(
+      "step", [this](train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
+        return Step(request, response);
+      });
+  step.callback_queue = &queue_;
+  step_ = private_.advertiseService(step);
+}
+
+void WagonNode::Run() {
+  while (ros::ok() && !IsLeftAlone()) ros::WallDuration(kTick).sleep();
+  ros::shutdown();  // ends the thread that runs the callbacks, before what they use is destroyed
+}
+
+bool WagonNode::Configure(ConfigureCall& call) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string caller = CallerOf(*call.connection_header);
+  const boost::shared_ptr<const ros::M_string> session = session_.lock();
+  server_.Configure(*call.request, session && CallerOf(*session) != caller, *call.response);
+  if (!call.response->ok) {
+    ROS_WARN("refused to be configured by %s: %s", caller.c_str(), call.response->message.c_str());
+    return true;
+  }
+  session_ = call.connection_header;
+  last_contact_ = Clock::now();
+  publishers_.clear();
+  for (const train_brake_msgs::WagonState& detail : call.response->record.details) {
+    const std::string name =
+        train_dynamics::VehicleName(static_cast<int>(detail.vehicle) - 1, server_.vehicles_in_train());
+    publishers_[detail.vehicle] = node_.advertise<train_brake_msgs::WagonState>(name + "/state", 100);
+  }
+  ROS_DEBUG("configured by %s: %s", caller.c_str(), call.response->message.c_str());
+  Publish(call.response->record);
+  return true;
+}
+
+bool WagonNode::Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  response = server_.Step(request);
+  if (response.ok) {
+    last_contact_ = Clock::now();
+    Publish(response.record);
+  } else {
+    ROS_WARN_THROTTLE(1.0, "refused a step: %s", response.message.c_str());
+  }
+  return true;
+}
+
+void WagonNode::Publish(const train_brake_msgs::RankRecord& record) {
+  for (const train_brake_msgs::WagonState& detail : record.details)
+    publishers_[detail.vehicle].publish(detail);
+}
+
+bool WagonNode::IsLeftAlone() {
+  const Clock::time_point now = Clock::now();
+  std::unique_lock<std::mutex> lock(mutex_);
+  const bool has_run = server_.run_id() != 0;
+  if (!session_.expired()) last_contact_ = now;
+  if (!has_run && now >= next_question_) {
+    next_question_ = now + std::chrono::duration_cast<Clock::duration>(timeout_ / kQuestionsPerTimeout);
+    lock.unlock();  // the answer may take long
+    const bool is_there = ros::master::check();
+    lock.lock();
+    if (is_there) last_contact_ = now;
+  }
+  if (timeout_.count() <= 0.0 || now - last_contact_ <= timeout_) return false;
+  ROS_WARN("%s has been gone for %.1f s: this wagon node leaves",
+           has_run ? "the train's master" : "the ROS master", timeout_.count());
+  return true;
+}
+
+}  // namespace wagon_node

@@ -1,0 +1,245 @@
+#include "wagon_node/wagon_server.h"
+
+#include <train_brake_msgs/wagon_detail.h>
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <vector>
+
+#include "train_dynamics/config/reader.h"
+#include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/threaded_block.h"
+
+namespace wagon_node {
+namespace {
+
+using train_brake_msgs::ConfigureRequest;
+using train_brake_msgs::ConfigureResponse;
+using train_brake_msgs::RankRecord;
+using train_brake_msgs::StepRequest;
+using train_brake_msgs::StepResponse;
+using train_dynamics::ScenarioParams;
+
+/// Why a request is refused.
+class Refusal : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+std::string Text(std::uint64_t value) { return std::to_string(value); }
+
+std::string Hex(std::uint64_t value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%016" PRIx64, value);
+  return text;
+}
+
+ScenarioParams Read(const std::string& scenario) {
+  train_dynamics::config::ErrorList errors;
+  ScenarioParams params = train_dynamics::config::LoadText<ScenarioParams>(scenario, "scenario", errors);
+  if (!errors.empty()) throw Refusal("the scenario cannot be used:\n" + errors.Text(5));
+  return params;
+}
+
+/// Those of the train's detailed vehicles that are in the rank.
+std::vector<int> DetailedVehicles(const ScenarioParams& scenario, const train_dynamics::Rank& rank) {
+  std::vector<int> detailed;
+  for (const int vehicle : scenario.DetailedVehicles()) {
+    if (vehicle >= rank.first && vehicle < rank.first + rank.count) detailed.push_back(vehicle);
+  }
+  return detailed;
+}
+
+/// What is wrong with an array of a request; empty: nothing.
+std::string Check(const char* name, const std::vector<double>& values, std::size_t expected) {
+  if (values.size() != expected) {
+    return std::string(name) + " has " + Text(values.size()) + " values, expected " + Text(expected);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) continue;
+    return std::string(name) + "[" + Text(i) + "] is " + std::to_string(values[i]) + ", must be finite";
+  }
+  return "";
+}
+
+}  // namespace
+
+/// One rank's part of a run.
+struct WagonServer::Run {
+  Run(std::uint64_t run_id, const ScenarioParams& params, const train_dynamics::Consist& consist, int first,
+      int count, int threads)
+      : id(run_id),
+        scenario(params),
+        rank{train_dynamics::VehicleName(first, consist.vehicles()), first, count},
+        vehicles_in_train(consist.vehicles()),
+        vehicles(params, consist, first, count, threads),
+        state(count, DetailedVehicles(params, rank)) {}
+
+  bool IsRepeated(const StepRequest& request) const {
+    return next_exchange > 0 && request.exchange == next_exchange - 1;
+  }
+  /// The state as a record, with the loads that led to it.
+  void Fill(bool with_energy, RankRecord& record) const;
+
+  const std::uint64_t id;
+  const ScenarioParams scenario;
+  const train_dynamics::Rank rank;
+  const int vehicles_in_train;
+  train_dynamics::ThreadedBlock vehicles;
+  train_dynamics::ExchangeRequest loads;
+  train_dynamics::ExchangeReply state;
+  std::uint64_t next_exchange = 0;
+  StepResponse last_reply;
+};
+
+void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
+  record.position_m = state.position_m;
+  record.speed_mps = state.speed_mps;
+  record.shoe_force_n = state.shoe_force_n;
+  record.wheel_force_n = state.wheel_force_n;
+  record.creepage = state.creepage;
+  record.state_digest = state.state_digest;
+  record.details.resize(state.details.size());
+  for (std::size_t i = 0; i < state.details.size(); ++i) {
+    const train_dynamics::WagonDetail& detail = state.details[i];
+    train_brake_msgs::WagonState& message = record.details[i];
+    train_brake_msgs::DetailToMessage(detail, message);
+    message.header.stamp.fromSec(static_cast<double>(next_exchange) * scenario.exchange_interval_s);
+    message.exchange = next_exchange;
+    message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
+    if (next_exchange == 0) continue;  // nothing has acted on the vehicle yet
+    const int at = detail.vehicle - rank.first;
+    message.front_coupler_force_n = static_cast<float>(loads.coupler_force_n[at]);
+    message.rear_coupler_force_n = static_cast<float>(loads.coupler_force_n[at + 1]);
+    message.cylinder_pressure_pa = static_cast<float>(loads.cylinder_pressure_pa[at]);
+  }
+  if (!with_energy) return;
+  for (const train_dynamics::VehicleEnergy& energy : state.energy) {
+    record.kinetic_j.push_back(energy.kinetic);
+    record.potential_j.push_back(energy.potential);
+    record.gravity_work_j.push_back(energy.work.gravity);
+    record.traction_work_j.push_back(energy.work.traction);
+    record.dissipated_j.insert(record.dissipated_j.end(), energy.work.dissipated.begin(),
+                               energy.work.dissipated.end());
+  }
+}
+
+WagonServer::WagonServer(int threads) : threads_(threads) {}
+WagonServer::~WagonServer() = default;
+
+std::uint64_t WagonServer::run_id() const { return run_ ? run_->id : 0; }
+int WagonServer::vehicles_in_train() const { return run_ ? run_->vehicles_in_train : 0; }
+
+void WagonServer::Configure(const ConfigureRequest& request, bool driven, ConfigureResponse& response) {
+  response = ConfigureResponse();
+  response.protocol_version = ConfigureRequest::PROTOCOL_VERSION;
+  response.scenario_digest = train_dynamics::TextDigest(request.scenario);
+  try {
+    std::unique_ptr<Run> run = Begin(request, driven, response.scenario_digest);
+    run->vehicles.Report(0, true, run->state);
+    response.head_displacement_m = run->state.head_displacement_m;
+    response.head_velocity_mps = run->state.head_velocity_mps;
+    run->Fill(true, response.record);
+    response.ok = true;
+    response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) +
+                       ", scenario " + run->scenario.name + ", run " + Text(run->id);
+    run_ = std::move(run);
+  } catch (const std::exception& e) {  // a refusal, or parameters that a vehicle does not take
+    response.message = e.what();
+  }
+}
+
+std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& request, bool driven,
+                                                     std::uint64_t digest) const {
+  if (request.protocol_version != ConfigureRequest::PROTOCOL_VERSION) {
+    throw Refusal("the master speaks protocol version " + Text(request.protocol_version) +
+                  ", this wagon node version " + Text(ConfigureRequest::PROTOCOL_VERSION) +
+                  ": both must be of the same build");
+  }
+  if (request.scenario_digest != digest) {
+    throw Refusal("the scenario should have the digest " + Hex(request.scenario_digest) + ", but has " +
+                  Hex(digest) + " as it arrived");
+  }
+  if (request.run_id == 0) throw Refusal("run_id is 0, which stands for no run");
+  if (run_ && request.run_id == run_->id && run_->next_exchange > 0) {
+    throw Refusal("run " + Text(run_->id) + " is configured already, and exchange " +
+                  Text(run_->next_exchange) + " is next");
+  }
+  if (run_ && request.run_id != run_->id && driven) {
+    throw Refusal("this wagon node is driven in run " + Text(run_->id) + ", and run " + Text(request.run_id) +
+                  " must wait until that has ended");
+  }
+  const ScenarioParams scenario = Read(request.scenario);
+  const train_dynamics::Consist consist(scenario.train);
+  const std::uint64_t first = request.first_vehicle, count = request.vehicle_count;
+  const auto vehicles = static_cast<std::uint64_t>(consist.vehicles());
+  if (first < 1 || count < 1 || first - 1 + count > vehicles) {
+    throw Refusal("first_vehicle " + Text(first) + " and vehicle_count " + Text(count) +
+                  " are not in a train of " + Text(vehicles) + " vehicles");
+  }
+  return std::make_unique<Run>(request.run_id, scenario, consist, static_cast<int>(first - 1),
+                               static_cast<int>(count), threads_);
+}
+
+const StepResponse& WagonServer::Step(const StepRequest& request) {
+  const std::string why_not = WhyNot(request);
+  if (!why_not.empty()) {
+    refusal_.ok = false;
+    refusal_.message = why_not;
+    refusal_.exchange = request.exchange;
+    return refusal_;
+  }
+  Run& run = *run_;
+  StepResponse& reply = run.last_reply;
+  if (run.IsRepeated(request)) return reply;
+
+  run.loads.exchange = request.exchange;
+  run.loads.dt_s = request.dt_s;
+  run.loads.steps = static_cast<int>(request.steps);
+  run.loads.record = request.record;
+  run.loads.ledger = request.ledger;
+  run.loads.coupler_force_n = request.coupler_force_n;
+  run.loads.cylinder_pressure_pa = request.cylinder_pressure_pa;
+  const bool sound = run.vehicles.Advance(run.loads, 0, run.state);
+  ++run.next_exchange;
+
+  reply.ok = true;
+  reply.exchange = request.exchange;
+  reply.head_displacement_m = run.state.head_displacement_m;
+  reply.head_velocity_mps = run.state.head_velocity_mps;
+  const train_dynamics::VehicleFault fault =
+      sound ? train_dynamics::VehicleFault() : run.vehicles.FindFault();
+  reply.fault_vehicle = static_cast<std::uint32_t>(fault.vehicle + 1);
+  reply.fault = fault.what;
+  reply.record = RankRecord();
+  if (request.record) run.Fill(request.ledger, reply.record);
+  return reply;
+}
+
+std::string WagonServer::WhyNot(const StepRequest& request) const {
+  if (!run_) return "this wagon node has no run yet: Configure comes first";
+  const Run& run = *run_;
+  if (request.run_id != run.id) {
+    return "run " + Text(request.run_id) + " is not known here: this wagon node is in run " + Text(run.id);
+  }
+  if (run.IsRepeated(request)) return "";
+  if (request.exchange != run.next_exchange) {
+    return "exchange " + Text(request.exchange) +
+           (request.exchange < run.next_exchange ? " is past" : " leaves a gap") + ": exchange " +
+           Text(run.next_exchange) + " is next";
+  }
+  const auto steps = static_cast<std::uint32_t>(run.scenario.StepsPerExchange());
+  if (request.dt_s != run.scenario.dt_s || request.steps != steps) {
+    using train_dynamics::ShortestDecimal;
+    return Text(request.steps) + " steps of " + ShortestDecimal(request.dt_s) +
+           " s are asked for, but it is " + Text(steps) + " of " + ShortestDecimal(run.scenario.dt_s) +
+           " s in the scenario";
+  }
+  const auto count = static_cast<std::size_t>(run.rank.count);
+  const std::string wrong_force = Check("coupler_force_n", request.coupler_force_n, count + 1);
+  return !wrong_force.empty() ? wrong_force
+                              : Check("cylinder_pressure_pa", request.cylinder_pressure_pa, count);
+}
+
+}  // namespace wagon_node

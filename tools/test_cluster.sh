@@ -1,0 +1,114 @@
+#!/bin/bash
+# Runs a train over several "machines" and compares its digest with the same train in one process.
+#
+# The machines are network namespaces of this one, each with an address, its own loopback and an sshd; roslaunch reaches
+# them over ssh as it would any machine. The launch file alone says which vehicles run where. Needs root; removes all
+# that it made. `make test-cluster` calls it.
+# (No set -u: the setup files of ROS read variables that may be unset.)
+cd "$(dirname "$0")/.." || exit 1
+[ "$(id -u)" = 0 ] || { echo "test-cluster: network namespaces need root: run it with sudo" >&2; exit 1; }
+
+machines=3
+ranks=7   # not a multiple: blocks of unequal size
+net=10.77.31
+name=tb$$
+work=$(mktemp -d)
+workspace=$PWD
+lo_ok() { ip netns add "$1" 2>/dev/null && ip netns exec "$1" ip link set lo up 2>/dev/null; }
+
+cleanup() {
+  jobs -p | xargs -r kill 2>/dev/null
+  for i in $(seq $machines); do
+    ip netns pids ${name}m$i 2>/dev/null | xargs -r kill -9 2>/dev/null
+    ip netns del ${name}m$i 2>/dev/null
+  done
+  ip link del ${name}br 2>/dev/null
+  rm -rf "$work"
+}
+trap cleanup EXIT
+trap 'exit 130' INT TERM
+
+if ! lo_ok ${name}m1; then
+  echo "test-cluster: this machine does not allow network namespaces" >&2
+  [ "${CLUSTER_OPTIONAL:-}" = 1 ] && { echo "test-cluster: skipped"; exit 0; }
+  exit 1
+fi
+
+# The network: a bridge here, one leg into each machine.
+ip link add ${name}br type bridge && ip addr add $net.1/24 dev ${name}br && ip link set ${name}br up || exit 1
+for i in $(seq $machines); do
+  [ $i = 1 ] || lo_ok ${name}m$i || exit 1
+  ip link add ${name}v$i type veth peer name eth0 netns ${name}m$i
+  ip link set ${name}v$i master ${name}br up
+  ip netns exec ${name}m$i ip addr add $net.$((10 + i))/24 dev eth0
+  ip netns exec ${name}m$i ip link set eth0 up
+done
+
+# Keys, and an sshd on each machine. Paramiko knows neither our host keys nor our login but by this HOME.
+mkdir -p "$work/home/.ssh" "$work/sshd" /run/sshd
+chmod 700 "$work/home/.ssh"
+ssh-keygen -q -t rsa -b 2048 -m PEM -N '' -f "$work/home/.ssh/id_rsa"
+ssh-keygen -q -t rsa -b 2048 -m PEM -N '' -f "$work/sshd/host_key"
+cp "$work/home/.ssh/id_rsa.pub" "$work/sshd/authorized_keys"
+chmod 755 "$work"; chmod 600 "$work/sshd/authorized_keys"
+addresses=()
+for i in $(seq $machines); do
+  address=$net.$((10 + i))
+  addresses+=("$address")
+  ip netns exec ${name}m$i /usr/sbin/sshd -D -e -p 22 -h "$work/sshd/host_key" -o ListenAddress=$address \
+    -o PidFile=none -o UsePAM=no -o StrictModes=no -o PermitRootLogin=prohibit-password \
+    -o AuthorizedKeysFile="$work/sshd/authorized_keys" >"$work/sshd/$i.log" 2>&1 &
+  echo "$address $(cut -d' ' -f1,2 "$work/sshd/host_key.pub")" >>"$work/home/.ssh/known_hosts"
+done
+
+# What a user installs on each machine: a script that sets up the environment (docs/cluster.md).
+cat >"$work/env.sh" <<ENV
+#!/bin/bash
+. "$workspace/devel/setup.bash"
+export ROS_IP=\$(cut -d' ' -f3 <<<"\$SSH_CONNECTION")
+exec "\$@"
+ENV
+chmod +x "$work/env.sh"
+
+. devel/setup.bash
+export HOME=$work/home ROS_IP=$net.1 ROS_MASTER_URI=http://$net.1:11311
+scenario=$workspace/config/scenarios/emergency.yaml
+change="duration_s=1"
+expected=$(rosrun ltd_master train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
+
+# Where the wagon nodes really are, while they run.
+watch_placement() {
+  while sleep 0.2; do
+    for i in $(seq $machines); do
+      count=0
+      for pid in $(ip netns pids ${name}m$i 2>/dev/null); do
+        [ "$(cat /proc/"$pid"/comm 2>/dev/null)" = wagon_node ] && count=$((count + 1))
+      done
+      [ "$count" -gt "$(cat "$work/placed$i" 2>/dev/null || echo 0)" ] && echo $count >"$work/placed$i"
+    done
+  done
+}
+watch_placement &
+watcher=$!
+
+timeout 120 roslaunch train_brake emergency.launch nodes:=$ranks machines:="${addresses[*]}" env_loader:="$work/env.sh" \
+  user:=root out:="$work/out" set:="$change" exit_status_file:="$work/status" >"$work/launch.log" 2>&1
+kill $watcher 2>/dev/null
+code=$(cat "$work/status" 2>/dev/null || echo "none")
+got=$(sed -nE 's/.*"state_digest": "(.*)".*/\1/p' "$work/out/summary.json" 2>/dev/null)
+placed=$(for i in $(seq $machines); do cat "$work/placed$i" 2>/dev/null || echo 0; done | xargs)
+left=$(for i in $(seq $machines); do ip netns pids ${name}m$i; done | xargs -r ps -o comm= -p | grep -c wagon_node)
+
+echo "machines            ${addresses[*]}"
+echo "wagon nodes on each $placed (of $ranks)"
+echo "exit code           $code"
+echo "digest              $got"
+echo "in one process      $expected"
+echo "left behind         $left"
+if [ "$code" = 0 ] && [ -n "$expected" ] && [ "$got" = "$expected" ] && [ "$placed" = "3 2 2" ] && [ "$left" = 0 ]; then
+  echo "test-cluster: passed"
+else
+  tail -n 40 "$work/launch.log" "$work"/sshd/*.log >&2
+  echo "test-cluster: FAILED" >&2
+  exit 1
+fi
