@@ -8,8 +8,8 @@
 
 namespace {
 
-int Run(const ltd_master::MasterOptions& options) {
-  ltd_master::MasterNode master(options, ros::NodeHandle(), ros::NodeHandle("~"));
+int Run(const ltd_master::MasterOptions& options, const ros::NodeHandle& own) {
+  ltd_master::MasterNode master(options, ros::NodeHandle(), own);
   return master.Run();
 }
 
@@ -18,12 +18,13 @@ int Run(const ltd_master::MasterOptions& options) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "ltd_master", ros::init_options::NoSigintHandler);
   ltd_master::CatchInterrupts();
+  const ros::NodeHandle own("~");  // the node and its log end with the last handle: this one
   int exit_code = ltd_master::kFailure;
   std::string exit_status_file;
   try {
-    const auto options = ltd_master::MasterOptions::FromParameters(ros::NodeHandle("~"));
+    const auto options = ltd_master::MasterOptions::FromParameters(own);
     exit_status_file = options.exit_status_file;
-    exit_code = Run(options);
+    exit_code = Run(options, own);
   } catch (const train_dynamics::config::Error& e) {
     ROS_FATAL("bad configuration:\n%s", e.what());
     exit_code = ltd_master::kBadInput;

@@ -71,17 +71,17 @@ void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request,
 
 void RosTransport::WaitForRanks() {
   std::vector<bool> missing(ranks_.size(), true);
-  std::string why;
-  const auto connect = [&](std::size_t rank) {
-    why = missing[rank] ? caller_->Connect(static_cast<int>(rank)) : "";
+  const auto why_not = [&](std::size_t rank) {
+    std::string why = missing[rank] ? caller_->Connect(static_cast<int>(rank)) : "";
     missing[rank] = !why.empty();
-    return !missing[rank];
+    return why;
   };
   const Clock::time_point start = Clock::now();
   double next_report_s = kSecondsPerReport;
   // Asking for the first that is missing is enough until they are to be named: it spares the ROS master.
   for (std::size_t rank = 0; rank < ranks_.size();) {
-    if (connect(rank)) {
+    const std::string why = why_not(rank);
+    if (why.empty()) {
       ++rank;
       continue;
     }
@@ -89,11 +89,10 @@ void RosTransport::WaitForRanks() {
     const double waited_s = SecondsSince(start);
     const bool in_vain = options_.start_timeout_s > 0.0 && waited_s > options_.start_timeout_s;
     if (in_vain || waited_s > next_report_s) {
-      const std::string why_first = why;
-      for (std::size_t other = rank + 1; other < ranks_.size(); ++other) connect(other);
+      for (std::size_t other = rank + 1; other < ranks_.size(); ++other) why_not(other);
       const std::string text = fmt::format("{} of {} wagon nodes are missing after {:.0f} s: {}; {}: {}",
                                            std::count(missing.begin(), missing.end(), true), ranks_.size(),
-                                           waited_s, NamesOf(ranks_, missing), ranks_[rank].name, why_first);
+                                           waited_s, NamesOf(ranks_, missing), ranks_[rank].name, why);
       if (in_vain) throw RankFailure(text);
       ROS_WARN("%s", text.c_str());
       next_report_s += kSecondsPerReport;

@@ -72,7 +72,7 @@ bool WagonNode::Step(train_brake_msgs::StepRequest& request, train_brake_msgs::S
     last_contact_ = Clock::now();
     Publish(response.record);
   } else {
-    ROS_WARN_THROTTLE(1.0, "refused a step: %s", response.message.c_str());
+    ROS_WARN("refused a step: %s", response.message.c_str());
   }
   return true;
 }

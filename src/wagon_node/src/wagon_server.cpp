@@ -110,9 +110,10 @@ void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
     message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
     if (next_exchange == 0) continue;  // nothing has acted on the vehicle yet
     const int at = detail.vehicle - rank.first;
-    message.front_coupler_force_n = static_cast<float>(loads.coupler_force_n[at]);
-    message.rear_coupler_force_n = static_cast<float>(loads.coupler_force_n[at + 1]);
-    message.cylinder_pressure_pa = static_cast<float>(loads.cylinder_pressure_pa[at]);
+    using Load = decltype(message.cylinder_pressure_pa);
+    message.front_coupler_force_n = static_cast<Load>(loads.coupler_force_n[at]);
+    message.rear_coupler_force_n = static_cast<Load>(loads.coupler_force_n[at + 1]);
+    message.cylinder_pressure_pa = static_cast<Load>(loads.cylinder_pressure_pa[at]);
   }
   if (!with_energy) return;
   for (const train_dynamics::VehicleEnergy& energy : state.energy) {

@@ -1,0 +1,359 @@
+#include "wagon_node/wagon_server.h"
+
+#include <gtest/gtest.h>
+#include <ros/serialization.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/config/writer.h"
+#include "train_dynamics/train/in_process_train.h"
+
+namespace wagon_node {
+namespace {
+
+using testing::Test;
+using train_brake_msgs::ConfigureRequest;
+using train_brake_msgs::ConfigureResponse;
+using train_brake_msgs::StepRequest;
+using train_brake_msgs::StepResponse;
+using train_dynamics::config::LoadedScenario;
+
+constexpr std::uint64_t kRun = 17, kOtherRun = 18;
+constexpr int kFirst = 2, kCount = 3;  // the rank: vehicles 3-5 of 6
+
+LoadedScenario Load(const std::vector<std::string>& overrides = {}) {
+  return train_dynamics::config::LoadScenario(
+      std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml", overrides);
+}
+
+ConfigureRequest ConfigureFor(const LoadedScenario& scenario) {
+  ConfigureRequest request;
+  request.protocol_version = ConfigureRequest::PROTOCOL_VERSION;
+  request.run_id = kRun;
+  request.first_vehicle = kFirst + 1;
+  request.vehicle_count = kCount;
+  request.scenario = train_dynamics::config::Write(scenario.params);
+  request.scenario_digest = train_dynamics::TextDigest(request.scenario);
+  return request;
+}
+
+/// Forces and pressures that differ from vehicle to vehicle and from exchange to exchange.
+StepRequest StepFor(const LoadedScenario& scenario, std::uint64_t exchange) {
+  StepRequest request;
+  request.run_id = kRun;
+  request.exchange = exchange;
+  request.dt_s = scenario.params.dt_s;
+  request.steps = static_cast<std::uint32_t>(scenario.params.StepsPerExchange());
+  request.record = request.ledger = exchange % 5 == 4;
+  for (int i = 0; i <= kCount; ++i) {
+    request.coupler_force_n.push_back(1e4 * (i + 1) * (exchange % 2 == 0 ? 1.0 : -1.0));
+    if (i < kCount) request.cylinder_pressure_pa.push_back(1e5 * i);
+  }
+  return request;
+}
+
+/// A message bit by bit, so that NaN equals NaN.
+template <class Message>
+std::string Bytes(const Message& message) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  stream.next(message);
+  return {bytes.begin(), bytes.end()};
+}
+
+class WagonServerTest : public Test {
+ protected:
+  ConfigureResponse Configure(const ConfigureRequest& request, bool driven = true) {
+    ConfigureResponse response;
+    server_.Configure(request, driven, response);
+    return response;
+  }
+  void Begin() { ASSERT_TRUE(Configure(ConfigureFor(scenario_)).ok); }
+  StepResponse Step(std::uint64_t exchange) { return server_.Step(StepFor(scenario_, exchange)); }
+
+  void ExpectRefused(const StepRequest& request, const std::string& text) {
+    const StepResponse response = server_.Step(request);
+    EXPECT_FALSE(response.ok) << text;
+    EXPECT_EQ(response.message, text);
+    EXPECT_TRUE(response.head_velocity_mps.empty());
+  }
+  void ExpectRefused(const ConfigureRequest& request, const std::string& text, bool driven = true) {
+    const ConfigureResponse response = Configure(request, driven);
+    EXPECT_FALSE(response.ok) << text;
+    EXPECT_EQ(response.message, text);
+    EXPECT_TRUE(response.record.state_digest.empty());
+  }
+
+  const LoadedScenario scenario_ = Load();
+  WagonServer server_{1};
+};
+
+// ---- the right bits ----
+
+/// Compares a rank with the same vehicles in this process, request by request.
+class Mirror : public train_dynamics::Transport {
+ public:
+  Mirror(const LoadedScenario& scenario, int threads)
+      : scenario_(scenario), vehicles_(scenario.params, scenario.consist, 1), server_(threads) {}
+
+  void Start(train_dynamics::ExchangeReply& reply) override {
+    vehicles_.Start(reply);
+    ConfigureResponse response;
+    server_.Configure(ConfigureFor(scenario_), false, response);
+    ASSERT_TRUE(response.ok) << response.message;
+    ExpectSlice(response.head_displacement_m, reply.head_displacement_m);
+    ExpectSlice(response.head_velocity_mps, reply.head_velocity_mps);
+    ExpectRecord(response.record, reply);
+    ExpectEnergies(response.record, reply);
+  }
+
+  void Exchange(const train_dynamics::ExchangeRequest& request,
+                train_dynamics::ExchangeReply& reply) override {
+    vehicles_.Exchange(request, reply);
+    StepRequest part = StepFor(scenario_, request.exchange);
+    part.record = request.record;
+    part.ledger = request.ledger;
+    const auto force = request.coupler_force_n.begin() + kFirst;
+    const auto pressure = request.cylinder_pressure_pa.begin() + kFirst;
+    part.coupler_force_n.assign(force, force + kCount + 1);
+    part.cylinder_pressure_pa.assign(pressure, pressure + kCount);
+    const StepResponse& response = server_.Step(part);
+    ASSERT_TRUE(response.ok) << response.message;
+    EXPECT_EQ(response.exchange, request.exchange);
+    EXPECT_EQ(response.fault_vehicle, 0u);
+    ExpectSlice(response.head_displacement_m, reply.head_displacement_m);
+    ExpectSlice(response.head_velocity_mps, reply.head_velocity_mps);
+    if (request.record) ExpectRecord(response.record, reply);
+    EXPECT_EQ(response.record.state_digest.empty(), !request.record);
+    if (request.ledger) ExpectEnergies(response.record, reply);
+    EXPECT_EQ(response.record.kinetic_j.empty(), !request.ledger);
+  }
+
+ private:
+  template <class Part, class Whole>
+  static void ExpectSlice(const Part& part, const Whole& whole) {
+    ASSERT_EQ(part.size(), static_cast<std::size_t>(kCount));
+    EXPECT_TRUE(std::equal(part.begin(), part.end(), whole.begin() + kFirst, [](auto a, auto b) {
+      return a == b || (a != a && b != b);  // NaN where LTD computes nothing
+    }));
+  }
+
+  void ExpectRecord(const train_brake_msgs::RankRecord& record, const train_dynamics::ExchangeReply& reply) {
+    ExpectSlice(record.position_m, reply.position_m);
+    ExpectSlice(record.speed_mps, reply.speed_mps);
+    ExpectSlice(record.shoe_force_n, reply.shoe_force_n);
+    ExpectSlice(record.wheel_force_n, reply.wheel_force_n);
+    ExpectSlice(record.creepage, reply.creepage);
+    ExpectSlice(record.state_digest, reply.state_digest);
+    // Of the vehicles 1, 4 and 6 in full detail, 4 is in the rank.
+    const bool has_details = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
+    ASSERT_EQ(record.details.size(), has_details ? 1u : 0u);
+    if (!has_details) return;
+    EXPECT_EQ(record.details[0].vehicle, 4u);
+    const train_dynamics::WagonDetail& detail = reply.details[1];
+    ASSERT_EQ(detail.vehicle, 3);
+    EXPECT_TRUE(std::equal(detail.velocity.pitch.begin(), detail.velocity.pitch.end(),
+                           record.details[0].body_pitch_radps.begin()));
+  }
+
+  static void ExpectEnergies(const train_brake_msgs::RankRecord& record,
+                             const train_dynamics::ExchangeReply& reply) {
+    ASSERT_EQ(record.dissipated_j.size(), std::size_t{kCount} * train_dynamics::kDissipations);
+    for (int i = 0; i < kCount; ++i) {
+      const train_dynamics::VehicleEnergy& energy = reply.energy[kFirst + i];
+      EXPECT_EQ(record.kinetic_j[i], energy.kinetic);
+      EXPECT_EQ(record.potential_j[i], energy.potential);
+      EXPECT_EQ(record.gravity_work_j[i], energy.work.gravity);
+      EXPECT_TRUE(std::equal(energy.work.dissipated.begin(), energy.work.dissipated.end(),
+                             record.dissipated_j.begin() + i * train_dynamics::kDissipations));
+    }
+  }
+
+  const LoadedScenario& scenario_;
+  train_dynamics::InProcessTransport vehicles_;
+  WagonServer server_;
+};
+
+TEST(WagonServer, ComputesTheBitsOfTheTrainInOneProcess) {
+  for (const char* model : {"2d", "ltd"}) {
+    for (const int threads : {1, 2}) {
+      SCOPED_TRACE(std::string(model) + ", threads: " + std::to_string(threads));
+      const LoadedScenario scenario = Load({std::string("model=") + model});
+      Mirror mirror(scenario, threads);
+      train_dynamics::TrainMaster master(scenario.params, scenario.consist, mirror, scenario.pressures);
+      master.Start();
+      while (!master.Done() && !Test::HasFatalFailure()) master.Exchange();
+    }
+  }
+}
+
+// ---- repeats ----
+
+TEST_F(WagonServerTest, RepeatsItsLastReplyAndMovesNothing) {
+  Begin();
+  WagonServer twin(1);
+  ConfigureResponse response;
+  twin.Configure(ConfigureFor(scenario_), false, response);
+  for (std::uint64_t exchange = 0; exchange < 10; ++exchange) {
+    const std::string first = Bytes(Step(exchange));
+    EXPECT_EQ(Bytes(Step(exchange)), first);
+    EXPECT_EQ(Bytes(Step(exchange)), first);
+    EXPECT_EQ(Bytes(twin.Step(StepFor(scenario_, exchange))), first);
+  }
+}
+
+TEST_F(WagonServerTest, MayBeConfiguredOnceMoreBeforeTheFirstExchange) {
+  Begin();
+  const ConfigureRequest request = ConfigureFor(scenario_);
+  EXPECT_EQ(Bytes(Configure(request)), Bytes(Configure(request)));
+  ASSERT_TRUE(Step(0).ok);
+  ExpectRefused(request, "run 17 is configured already, and exchange 1 is next");
+  EXPECT_TRUE(Step(1).ok);
+}
+
+// ---- refusals ----
+
+TEST_F(WagonServerTest, RefusesStepsWithoutARun) {
+  ExpectRefused(StepFor(scenario_, 0), "this wagon node has no run yet: Configure comes first");
+}
+
+TEST_F(WagonServerTest, RefusesStepsThatDoNotFitAndStaysAsItWas) {
+  Begin();
+  WagonServer twin(1);
+  ConfigureResponse ignored;
+  twin.Configure(ConfigureFor(scenario_), false, ignored);
+  for (std::uint64_t exchange = 0; exchange < 5; ++exchange) {
+    Step(exchange);
+    twin.Step(StepFor(scenario_, exchange));
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<std::function<void(StepRequest&)>, std::string>> wrong = {
+      {[](auto& r) { r.run_id = kOtherRun; }, "run 18 is not known here: this wagon node is in run 17"},
+      {[](auto& r) { r.exchange = 3; }, "exchange 3 is past: exchange 5 is next"},
+      {[](auto& r) { r.exchange = 7; }, "exchange 7 leaves a gap: exchange 5 is next"},
+      {[](auto& r) { r.exchange = ~std::uint64_t{0}; },
+       "exchange 18446744073709551615 leaves a gap: exchange 5 is next"},
+      {[](auto& r) { r.dt_s = 0.0005; },
+       "2 steps of 0.0005 s are asked for, but it is 2 of 0.001 s in the scenario"},
+      {[nan](auto& r) { r.dt_s = nan; },
+       "2 steps of nan s are asked for, but it is 2 of 0.001 s in the scenario"},
+      {[](auto& r) { r.steps = 4000000000; },
+       "4000000000 steps of 0.001 s are asked for, but it is 2 of 0.001 s in the scenario"},
+      {[](auto& r) { r.coupler_force_n.pop_back(); }, "coupler_force_n has 3 values, expected 4"},
+      {[](auto& r) { r.cylinder_pressure_pa.push_back(0.0); },
+       "cylinder_pressure_pa has 4 values, expected 3"},
+      {[](auto& r) { r.cylinder_pressure_pa.clear(); }, "cylinder_pressure_pa has 0 values, expected 3"},
+      {[nan](auto& r) { r.coupler_force_n[3] = nan; }, "coupler_force_n[3] is nan, must be finite"},
+      {[infinity](auto& r) { r.cylinder_pressure_pa[1] = -infinity; },
+       "cylinder_pressure_pa[1] is -inf, must be finite"},
+  };
+  for (const auto& [spoil, text] : wrong) {
+    StepRequest request = StepFor(scenario_, 5);
+    spoil(request);
+    ExpectRefused(request, text);
+  }
+  EXPECT_EQ(Bytes(Step(5)), Bytes(twin.Step(StepFor(scenario_, 5))));
+  EXPECT_EQ(Bytes(Step(6)), Bytes(twin.Step(StepFor(scenario_, 6))));
+}
+
+TEST_F(WagonServerTest, RefusesConfigurationsThatDoNotFitAndStaysAsItWas) {
+  Begin();
+  const StepResponse before = Step(0);
+  const std::string digest = [this] {
+    char text[24];
+    std::snprintf(text, sizeof text, "0x%016lx", ConfigureFor(scenario_).scenario_digest);
+    return std::string(text);
+  }();
+  const std::vector<std::pair<std::function<void(ConfigureRequest&)>, std::string>> wrong = {
+      {[](auto& r) { r.protocol_version = 99; },
+       "the master speaks protocol version 99, this wagon node version 1: both must be of the same build"},
+      {[](auto& r) { r.scenario_digest = 0xabc; },
+       "the scenario should have the digest 0x0000000000000abc, but has " + digest + " as it arrived"},
+      {[](auto& r) { r.run_id = 0; }, "run_id is 0, which stands for no run"},
+      {[](auto& r) { r.first_vehicle = 0; },
+       "first_vehicle 0 and vehicle_count 3 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.first_vehicle = 5; },
+       "first_vehicle 5 and vehicle_count 3 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.vehicle_count = 0; },
+       "first_vehicle 3 and vehicle_count 0 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.vehicle_count = 4294967295; },
+       "first_vehicle 3 and vehicle_count 4294967295 are not in a train of 6 vehicles"},
+  };
+  for (const auto& [spoil, text] : wrong) {
+    ConfigureRequest request = ConfigureFor(scenario_);
+    request.run_id = kOtherRun;
+    spoil(request);
+    ExpectRefused(request, text, false);
+  }
+  ConfigureRequest other = ConfigureFor(scenario_);
+  other.run_id = kOtherRun;
+  ExpectRefused(other, "this wagon node is driven in run 17, and run 18 must wait until that has ended");
+  EXPECT_EQ(Bytes(Step(0)), Bytes(before));
+  EXPECT_TRUE(Step(1).ok);
+  EXPECT_EQ(server_.run_id(), kRun);
+}
+
+TEST_F(WagonServerTest, NamesWhatIsWrongWithAScenario) {
+  ConfigureRequest request = ConfigureFor(scenario_);
+  const auto set_scenario = [&request](const std::string& text) {
+    request.scenario = text;
+    request.scenario_digest = train_dynamics::TextDigest(text);
+  };
+  std::string text = request.scenario;
+  const std::size_t place = text.find("duration_s: ") + 12;
+  text.insert(place, "-");
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(place), '\n');
+  set_scenario(text);
+  ExpectRefused(request, "the scenario cannot be used:\nscenario:" + std::to_string(line) +
+                             ": duration_s must be in (0, 1000000), got -0.2");
+  set_scenario("name: [");
+  EXPECT_FALSE(Configure(request).ok);
+  set_scenario("");
+  EXPECT_FALSE(Configure(request).ok);
+}
+
+TEST_F(WagonServerTest, ReadsNoFilesForAMaster) {
+  ConfigureRequest request = ConfigureFor(scenario_);
+  request.scenario = "train: /etc/passwd\ntrack: level\n";
+  request.scenario_digest = train_dynamics::TextDigest(request.scenario);
+  const ConfigureResponse response = Configure(request);
+  EXPECT_FALSE(response.ok);
+  EXPECT_NE(response.message.find("scenario:1: train must be a map, because no files are read here"),
+            std::string::npos)
+      << response.message;
+}
+
+// ---- runs ----
+
+TEST_F(WagonServerTest, StartsAnotherRunWhenNobodyDrivesThePresentOne) {
+  Begin();
+  ASSERT_TRUE(Step(0).ok);
+  ConfigureRequest other = ConfigureFor(scenario_);
+  other.run_id = kOtherRun;
+  ASSERT_TRUE(Configure(other, false).ok);
+  ExpectRefused(StepFor(scenario_, 1), "run 17 is not known here: this wagon node is in run 18");
+  StepRequest step = StepFor(scenario_, 0);
+  step.run_id = kOtherRun;
+  EXPECT_TRUE(server_.Step(step).ok);
+}
+
+TEST_F(WagonServerTest, NamesTheVehicleThatGoesAstray) {
+  Begin();
+  StepRequest request = StepFor(scenario_, 0);
+  request.coupler_force_n[2] =
+      1e13;  // pulls vehicle 4 back and vehicle 5 on, far beyond any speed of a train
+  const StepResponse& response = server_.Step(request);
+  EXPECT_TRUE(response.ok);
+  EXPECT_EQ(response.fault_vehicle, 4u);
+  EXPECT_NE(response.fault.find("carbody speed is -"), std::string::npos) << response.fault;
+}
+
+}  // namespace
+}  // namespace wagon_node

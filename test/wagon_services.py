@@ -1,0 +1,190 @@
+#!/usr/bin/python3
+"""A wagon node as any ROS user meets it: plain service calls, the topic of a vehicle, the end of the ROS master."""
+import math
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rosgraph
+import rospy
+import rosservice
+import rostest
+from train_brake_msgs.msg import WagonState
+from train_brake_msgs.srv import Configure, ConfigureRequest, Step, StepRequest
+
+NODE = "/train/wagon_001"
+WORD = 2**64 - 1
+
+
+def text_digest(text):
+    """The digest of lockstep.h, by its description."""
+    def mix(x):
+        for _ in range(2):
+            x = ((x ^ (x >> 32)) * 0xd6e8feb86659fd93) & WORD
+        return x ^ (x >> 32)
+
+    data = text.encode()
+    state = mix(0x9e3779b97f4a7c15 ^ len(data))
+    for begin in range(0, len(data), 8):
+        state = mix(state ^ int.from_bytes(data[begin:begin + 8], "little"))
+    return state
+
+
+def resolved_scenario():
+    """The scenario as the master sends it, with all parts in place."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
+                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return (pathlib.Path(folder) / "config.yaml").read_text()
+
+
+class WagonServices(unittest.TestCase):
+    run_id = 2**63 + 5  # it uses all of its 64 bits
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scenario = resolved_scenario()
+        rospy.wait_for_service(NODE + "/step", 20)
+        cls.configure = rospy.ServiceProxy(NODE + "/configure", Configure, persistent=True)
+        cls.step = rospy.ServiceProxy(NODE + "/step", Step, persistent=True)
+
+    def configure_request(self, **changes):
+        request = ConfigureRequest(protocol_version=ConfigureRequest.PROTOCOL_VERSION, run_id=self.run_id, first_vehicle=1,
+                                   vehicle_count=2, scenario=self.scenario, scenario_digest=text_digest(self.scenario))
+        for key, value in changes.items():
+            setattr(request, key, value)
+        return request
+
+    def step_request(self, exchange, **changes):
+        request = StepRequest(run_id=self.run_id, exchange=exchange, dt_s=0.001, steps=2, coupler_force_n=[0.0, 1e4, 2e4],
+                              cylinder_pressure_pa=[1e5, 2e5])
+        for key, value in changes.items():
+            setattr(request, key, value)
+        return request
+
+    def begin(self):
+        type(self).run_id += 1  # each test is a run of its own, by the same master
+        reply = self.configure(self.configure_request(run_id=self.run_id))
+        self.assertTrue(reply.ok, reply.message)
+        return reply
+
+    def refused(self, reply, text):
+        self.assertFalse(reply.ok)
+        self.assertIn(text, reply.message)
+
+    def test_configure_brings_the_vehicles_to_time_0(self):
+        reply = self.begin()
+        self.assertEqual(reply.message, "vehicles 1-2 of 6, scenario short_train, run %d" % self.run_id)
+        self.assertEqual(reply.scenario_digest, text_digest(self.scenario))
+        self.assertEqual(len(reply.head_velocity_mps), 2)
+        for speed in reply.record.speed_mps:
+            self.assertAlmostEqual(speed, 80 / 3.6, places=12)
+        self.assertEqual([detail.vehicle for detail in reply.record.details], [1])
+
+    def test_wrong_version_and_digest_are_refused_with_both_values(self):
+        self.refused(self.configure(self.configure_request(protocol_version=7)),
+                     "the master speaks protocol version 7, this wagon node version 1")
+        self.refused(self.configure(self.configure_request(scenario_digest=1)),
+                     "digest 0x0000000000000001, but has 0x%016x" % text_digest(self.scenario))
+
+    def test_a_step_moves_and_its_repetition_does_not(self):
+        self.begin()
+        first = self.step(self.step_request(0, run_id=self.run_id, record=True, ledger=True))
+        self.assertTrue(first.ok, first.message)
+        self.assertEqual(self.step(self.step_request(0, run_id=self.run_id)), first)
+        # About 22.2 m/s for 2 ms; brake and couplers change the speed by far less than 1 % in that time.
+        for distance in first.head_displacement_m:
+            self.assertAlmostEqual(distance, 80 / 3.6 * 0.002, delta=0.01 * 80 / 3.6 * 0.002)
+        second = self.step(self.step_request(1, run_id=self.run_id))
+        self.assertTrue(second.ok, second.message)
+        self.assertFalse(second.record.state_digest)
+
+    def test_gaps_and_the_past_are_refused_with_both_numbers(self):
+        self.begin()
+        for exchange in range(3):
+            self.assertTrue(self.step(self.step_request(exchange, run_id=self.run_id)).ok)
+        self.refused(self.step(self.step_request(4, run_id=self.run_id)), "exchange 4 leaves a gap: exchange 3 is next")
+        self.refused(self.step(self.step_request(1, run_id=self.run_id)), "exchange 1 is past: exchange 3 is next")
+        self.assertTrue(self.step(self.step_request(3, run_id=self.run_id)).ok)
+
+    def test_what_is_not_finite_or_of_a_wrong_size_is_refused(self):
+        self.begin()
+        self.refused(self.step(self.step_request(0, run_id=self.run_id, coupler_force_n=[0.0, math.nan, 0.0])),
+                     "coupler_force_n[1] is nan")
+        self.refused(self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0])),
+                     "cylinder_pressure_pa has 1 values, expected 2")
+        self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
+
+    def test_another_run_changes_nothing(self):
+        self.begin()
+        self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
+        self.refused(self.step(self.step_request(1, run_id=99)), "run 99 is not known here")
+        # Somebody else, from the command line, while we are connected.
+        arguments = "{protocol_version: 1, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', " \
+                    "scenario_digest: %d}" % text_digest("")
+        call = subprocess.run(["rosservice", "call", NODE + "/configure", arguments], stdout=subprocess.PIPE,
+                              universal_newlines=True, check=True)
+        self.assertIn("ok: False", call.stdout)
+        self.assertIn("driven in run %d" % self.run_id, call.stdout)
+        self.assertTrue(self.step(self.step_request(1, run_id=self.run_id)).ok)
+
+    def test_detailed_vehicles_are_published(self):
+        self.begin()
+        received = []
+        subscriber = rospy.Subscriber("/train/wagon_001/state", WagonState, received.append)
+        deadline = time.time() + 20
+        while subscriber.get_num_connections() == 0 and time.time() < deadline:
+            time.sleep(0.05)
+        reply = self.step(self.step_request(0, run_id=self.run_id, record=True))
+        while not received and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(received[-1].exchange, 1)
+        self.assertEqual(received[-1].header.stamp.to_sec(), 0.002)
+        self.assertEqual(received[-1].body_x_m, reply.record.details[0].body_x_m)
+
+    def test_services_are_what_rosservice_shows(self):
+        self.assertEqual(rosservice.get_service_type(NODE + "/configure"), "train_brake_msgs/Configure")
+        self.assertEqual(rosservice.get_service_type(NODE + "/step"), "train_brake_msgs/Step")
+
+    def test_a_node_without_a_ros_master_leaves(self):
+        port = free_port()
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
+        core = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], env=environment, stdout=subprocess.DEVNULL)
+        try:
+            uri = environment["ROS_MASTER_URI"]
+            wait_until(lambda: rosgraph.is_master_online(uri))
+            wagon = subprocess.Popen(["rosrun", "wagon_node", "wagon_node", "_master_timeout_s:=1"], env=environment)
+            master = rosgraph.Master("/test", uri)
+            wait_until(lambda: any(name == "/wagon/step" for name, _ in master.getSystemState()[2]))
+            time.sleep(3)  # three times its patience, without any request
+            self.assertIsNone(wagon.poll())
+            core.send_signal(signal.SIGKILL)
+            wagon.wait(10)
+        finally:
+            core.kill()
+            core.wait()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def wait_until(condition, wall_s=20):
+    deadline = time.time() + wall_s
+    while not condition():
+        if time.time() > deadline:
+            raise AssertionError("waited for %s s in vain" % wall_s)
+        time.sleep(0.1)
+
+
+if __name__ == "__main__":
+    rospy.init_node("wagon_services_test")
+    rostest.rosrun("train_brake", "wagon_services", WagonServices, sys.argv)
