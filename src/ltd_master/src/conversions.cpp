@@ -74,7 +74,7 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
   train_brake_msgs::DetailToMessage(detail, message);
   message.front_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle]);
   message.rear_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle + 1]);
-  message.cylinder_pressure_pa = static_cast<float>(record.cylinder_pressure_pa[detail.vehicle]);
+  message.cylinder_pressure_pa = static_cast<float>(record.held_pressure_pa[detail.vehicle]);
 }
 
 }  // namespace ltd_master

@@ -50,7 +50,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
   };
   fmt::print(history_, "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", record.time_s,
-             3.6 * mean(speed), 3.6 * speed.front(), 3.6 * speed.back(), mean(record.vehicles.position_m),
+             3.6 * record.mean_speed_mps, 3.6 * speed.front(), 3.6 * speed.back(), record.mean_position_m,
              *std::max_element(force.begin(), force.end()), *std::min_element(force.begin(), force.end()),
              mean(record.cylinder_pressure_pa));
 

@@ -128,7 +128,7 @@ int MasterNode::Run() {
   RunOutput output(options_.output, options_.scenario, scenario);
   const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
   TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
-  train_dynamics::RunSummary summary(scenario, scenario_.consist);
+  train_dynamics::RunSummary summary(scenario);
   std::unique_ptr<Progress> progress;
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
@@ -136,7 +136,7 @@ int MasterNode::Run() {
   master.AddObserver([&](const TrainRecord& record) {
     if (progress == nullptr)
       progress = std::make_unique<Progress>(scenario.duration_s);  // the start-up is over
-    progress->Show(record.time_s, summary.MeanSpeed());
+    progress->Show(record.time_s, record.mean_speed_mps);
   });
 
   ros::AsyncSpinner spinner(1);
@@ -152,17 +152,24 @@ int MasterNode::Run() {
   } catch (const WaitInterrupted&) {
     exit_code = kInterrupted;
   } catch (const RankFailure& e) {
-    // When a launch is ended, wagon nodes may leave before the master hears of it.
-    ros::WallDuration(0.5).sleep();
     exit_code = Ending() ? kInterrupted : kRankFailure;
     fault = e.what();
+  } catch (const std::exception& e) {  // of the recorder
+    exit_code = kFailure;
+    fault = std::string("the results could not be written: ") + e.what();
   }
   control_.End();
   spinner.stop();
 
+  if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
   const std::string json = summary.Json(master, wall_s, exit_code == kInterrupted ? "" : fault);
-  output.Finish(master, json);
+  try {
+    output.Finish(master, json);
+  } catch (const std::exception& e) {
+    exit_code = kFailure;
+    fault = std::string("the results could not be written: ") + e.what();
+  }
   PublishDiagnostics(master, exit_code == kSuccess ? "complete" : "ended early");
   fmt::print("{}", json);
   std::fflush(stdout);

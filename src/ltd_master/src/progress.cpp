@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace ltd_master {
@@ -17,8 +18,9 @@ Progress::Progress(double duration_s) : duration_s_(duration_s), on_terminal_(is
   next_s_ = on_terminal_ ? kTerminalPeriod : kQuietShare * duration_s_;
 }
 
-Progress::~Progress() {
+void Progress::Finish() {
   if (line_open_) fmt::print(stderr, "\n");
+  line_open_ = false;
 }
 
 double Progress::WallSeconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -32,9 +34,9 @@ void Progress::Show(double simulated_s, double mean_speed_mps) {
 
 void Progress::Print(double simulated_s, double mean_speed_mps, double wall_s) {
   const double factor = simulated_s / wall_s;
-  const double left_s = (duration_s_ - simulated_s) / factor;
+  const double left_s = std::max(0.0, (duration_s_ - simulated_s) / factor);
   fmt::print(stderr, "{}{:7.2f} of {:g} s   {:6.2f} km/h   {:6.1f} x real time   {:5.1f} s left{}",
-             on_terminal_ ? "\r" : "", simulated_s, duration_s_, 3.6 * mean_speed_mps, factor, left_s,
+             on_terminal_ ? "\r" : "", simulated_s, duration_s_, 3.6 * mean_speed_mps + 0.0, factor, left_s,
              on_terminal_ ? "\x1b[K" : "\n");
   std::fflush(stderr);
   line_open_ = on_terminal_;

@@ -38,29 +38,40 @@ int Threads(const RunOptions& options, const train_dynamics::ScenarioParams& sce
 
 int RunScenario(const RunOptions& options) {
   const LoadedScenario scenario = Load(options);
-  RunOutput output({options.out, true, options.csv}, options.scenario, scenario.params);
-
   train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
                                               Threads(options, scenario.params));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
-  train_dynamics::RunSummary summary(scenario.params, scenario.consist);
+  RunOutput output({options.out, true, options.csv}, options.scenario, scenario.params);
+  train_dynamics::RunSummary summary(scenario.params);
   Progress progress(scenario.params.duration_s);
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
-  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, summary.MeanSpeed()); });
+  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
 
   CatchInterrupts();
-  std::string fault;
+  std::string fault, write_error;
   try {
     master.Start();
     while (!master.Done() && Interrupt() == 0) master.Exchange();
   } catch (const train_dynamics::SimulationFault& e) {
     fault = e.what();
+  } catch (const std::exception& e) {  // of a recorder
+    write_error = e.what();
   }
+  progress.Finish();
 
   const std::string json = summary.Json(master, progress.WallSeconds(), fault);
-  output.Finish(master, json);
+  try {
+    output.Finish(master, json);
+  } catch (const std::exception& e) {
+    write_error = e.what();
+  }
   fmt::print("{}", json);
+  if (!write_error.empty()) {
+    fmt::print(stderr, "train_sim: the results could not be written at {:.3f} s: {} (is the disk full?)\n",
+               master.time_s(), write_error);
+    return kFailure;
+  }
   if (!fault.empty()) {
     fmt::print(stderr, "train_sim: the simulation broke down: {}\n", fault);
     return kSimulationFault;
@@ -89,10 +100,10 @@ int CheckScenario(const RunOptions& options) {
   const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
   fmt::print("{}: {}\n", p.name, p.description);
   fmt::print("  model      {}\n", train_dynamics::ModelName(p.model));
-  fmt::print("  train      {}: {} vehicles, {:.0f} t, {:.1f} m; {} couplers, {} draw-bars\n", p.train.name,
+  fmt::print("  train      {}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars\n", p.train.name,
              consist.vehicles(), 1e-3 * mass, length, consist.connection_type.size() - draw_bars, draw_bars);
   fmt::print("  track      {}\n", p.track.name);
-  fmt::print("  pressures  {}\n", p.pressure_table.empty() ? fmt::format("{}, {} driver commands",
+  fmt::print("  pressures  {}\n", p.pressure_table.empty() ? fmt::format("{}, {} driver command(s)",
                                                                          p.brake->name, p.commands.size())
                                                            : p.pressure_table);
   fmt::print(

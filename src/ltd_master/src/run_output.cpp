@@ -1,7 +1,9 @@
 #include "ltd_master/run_output.h"
 
 #include <fstream>
+#include <regex>
 #include <stdexcept>
+#include <vector>
 
 #include "train_dynamics/config/writer.h"
 
@@ -10,20 +12,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// First line of the config.yaml of a run: the mark of a folder that holds results of ours and nothing of the user's.
+constexpr const char* kMark = "# A run of train_brake: everything resolved. Running it again gives the same bits.";
+
 fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
 
-/// Makes the folder and clears it of the results of an earlier run.
+bool IsResult(const std::string& name) {
+  static const std::regex pattern(
+      "train\\.bag(\\.active)?|(summary\\.json|config\\.yaml)(\\.unfinished)?|pressure_table\\.csv|train_history\\.csv|"
+      "pressures\\.csv|couplers\\.csv|vehicles\\.csv|wagon_[0-9]+\\.csv");
+  return std::regex_match(name, pattern);
+}
+
+bool HasMark(const fs::path& folder) {
+  std::ifstream config(folder / "config.yaml");
+  std::string line;
+  return std::getline(config, line) && line == kMark;
+}
+
+/// Makes the folder; clears it of the results of an earlier run, but of nothing that a user may have put there.
 void PrepareFolder(const fs::path& folder) {
-  fs::create_directories(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool result = name == "train.bag" || name == "train.bag.active" || name == "summary.json" ||
-                        name == "config.yaml" || name == "pressure_table.csv" ||
-                        name == "train_history.csv" || name == "pressures.csv" || name == "couplers.csv" ||
-                        name == "vehicles.csv" ||
-                        (name.rfind("wagon_", 0) == 0 && entry.path().extension() == ".csv");
-    if (result) fs::remove(entry.path());
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw std::runtime_error(folder.string() + " is not a folder: results cannot go there");
   }
+  fs::create_directories(folder);
+  const bool ours = HasMark(folder);
+  std::vector<fs::path> results;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (IsResult(entry.path().filename().string())) results.push_back(entry.path());
+  }
+  if (!ours && !results.empty()) {
+    throw std::runtime_error(folder.string() + " holds " + results.front().filename().string() +
+                             ", but no run of train_brake: choose another folder for the results");
+  }
+  for (const fs::path& file : results) fs::remove(file);
 }
 
 /// Everything that a repetition of the run needs, so that it gives the same bits.
@@ -33,7 +55,7 @@ void WriteResolvedConfig(train_dynamics::ScenarioParams scenario, const fs::path
                   fs::copy_options::overwrite_existing);
     scenario.pressure_table = "pressure_table.csv";
   }
-  WriteFile(folder / "config.yaml", train_dynamics::config::Write(scenario));
+  WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + train_dynamics::config::Write(scenario));
 }
 
 }  // namespace
@@ -70,9 +92,9 @@ void RunOutput::Record(const train_dynamics::TrainRecord& record) {
 
 void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json) {
   if (folder_.empty()) return;
+  WriteFile(folder_ / "summary.json", summary_json);
   if (bag_ != nullptr) bag_->Close();
   if (csv_ != nullptr) csv_->Close(master);
-  WriteFile(folder_ / "summary.json", summary_json);
 }
 
 }  // namespace ltd_master

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <functional>
+#include <stdexcept>
 
 #include "ltd_master/run_command.h"
 #include "ltd_master/vehicle_commands.h"
@@ -90,7 +92,9 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return Main(argc, argv);
+    const int exit_code = Main(argc, argv);
+    if (std::fflush(stdout) != 0) throw std::runtime_error("the output could not be written");
+    return exit_code;
   } catch (const train_dynamics::config::Error& e) {
     fmt::print(stderr, "{}\n", e.what());
     return ltd_master::kBadInput;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -18,6 +19,9 @@ inline std::string ScenarioFile(const std::string& name) {
   return std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios/" + name + ".yaml";
 }
 
+/// The paper's scenarios; table_one_test runs them whole, with every model.
+constexpr std::array<const char*, 3> kPaperScenarios = {"emergency", "full_service", "minimum"};
+
 /// What a whole run of a scenario came to.
 struct Outcome {
   double mean_speed_kmh = 0.0;  ///< at the end; the vehicles' masses are taken to be equal
@@ -26,6 +30,7 @@ struct Outcome {
   EnergyLedger ledger;              ///< the last
   std::uint64_t digest = 0;
   std::vector<double> record_times, accelerations;  ///< of every record; of the first vehicle
+  std::vector<ForceExtremes> coupler_extremes;      ///< of every exchange
 };
 
 /// Runs one of the project's scenarios, in process.
@@ -54,6 +59,7 @@ inline Outcome Simulate(const std::string& scenario, const std::vector<std::stri
   master.Start();
   while (!master.Done()) master.Exchange();
   outcome.digest = master.state_digest();
+  outcome.coupler_extremes = master.in_train_forces().extremes();
   return outcome;
 }
 

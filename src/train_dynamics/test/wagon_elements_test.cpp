@@ -278,10 +278,10 @@ double NestDeflection(const VehicleParams& p) {
     const auto staged = [](double outer, double inner, double x) {
       return outer * x + inner * std::max(0.0, x - 0.022);
     };
-    return staged(1590e3, 566e3, d) +
+    return staged(1590e3, 566e3, d) + 4e8 * std::max(0.0, d - 0.074) +
            kappa * staged(983e3, p.friction_wedge.inner_stiffness_n_per_m, kappa * d);
   };
-  double low = 0.0, high = 0.074;
+  double low = 0.0, high = 0.1;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (quarter(middle) < load ? low : high) = middle;
@@ -310,12 +310,24 @@ TEST(StaticEquilibrium, RestsAtTheDeflectionOfAScalarEquation) {
   EXPECT_NEAR(NestDeflection(p), 0.0644, 0.0001);  // without the inner spring; one unit: the notes cut off
 }
 
+TEST(StaticEquilibrium, AnOverloadedWagonRestsOnItsSolidSprings) {
+  VehicleParams p = OreWagon();
+  p.carbody.mass_kg = 300e3;  // twice the load; the coils carry 202 t
+  const Wagon w(p);
+  const ElementVector<double> e = ElementsOf(w, StaticEquilibrium(w, 0.0, 0.0).position);
+  EXPECT_GT(NestDeflection(p), 0.074);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(e.nest[i], NestDeflection(p), 1e-10);  // as above
+}
+
 TEST(StaticEquilibrium, AWagonThatItsSpringsCannotCarryIsRefused) {
   VehicleParams p = OreWagon();
-  p.carbody.mass_kg = -5.0;
-  EXPECT_THROW(Wagon{p}, std::invalid_argument);
-  p.carbody.mass_kg = 1e9;  // rests on its solid springs
-  EXPECT_NO_THROW(StaticEquilibrium(Wagon(p), 0.0, 0.0));
+  // Soft all the way, each of the eight half nests would have to yield by 180 km.
+  p.spring_nest.outer_stiffness_n_per_m = p.spring_nest.solid_stiffness_n_per_m = 1.0;
+  p.spring_nest.inner_stiffness_n_per_m = 0.0;
+  p.friction_wedge.outer_stiffness_n_per_m = 1e-3;
+  p.friction_wedge.inner_stiffness_n_per_m = 0.0;
+  const Wagon w(p);  // every number is one that a wagon may have
+  EXPECT_THROW(StaticEquilibrium(w, 0.0, 0.0), std::invalid_argument);
 }
 
 TEST(StaticEquilibrium, NothingMovesBesideTheSpeed) {

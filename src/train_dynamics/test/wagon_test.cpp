@@ -268,8 +268,11 @@ TEST(Stop, OneMillisecondIsFineEnough) {
   const std::vector<Sample> coarse = Stop(90.0, kStep), fine = Stop(90.0, kFineStep);
   EXPECT_NEAR(coarse.back().distance, fine.back().distance, 0.010);  // the project's aim; 1 mm is what it is
   for (size_t ms = 1000; ms < coarse.size() && fine[ms].speed > 0.3; ++ms) {
-    // The aim is 50 N; implicit creep gives 1 N of 14 kN from the first second to the last. (An explicit step
-    // would be wrong by tens of kilonewtons, see wheelset_slip_test.)
+    // The aim is 50 N; implicit creep gives 1 N of 14 kN while the brake slows the wagon, from the end of the
+    // first second down to 0.3 m/s. (An explicit step would be wrong by tens of kilonewtons, see
+    // wheelset_slip_test.) Not covered: the first second, in which the pads settle, and the stop. There the
+    // two wagons lock their wheels at instants that differ by a fraction of a step, and the rocking that
+    // follows differs by hundreds of newtons for some tenths of a second (docs/validation.md, "Step size").
     ASSERT_NEAR(coarse[ms].creep, fine[ms].creep, 2.0) << ms << " ms";
   }
 }
@@ -347,6 +350,32 @@ TEST(Standstill, HoldsOnAGradeWithoutDrifting) {
     EXPECT_LT(std::abs(ride.Residual()), 1e-9 * kinetic_scale);
     for (int b = kWheelset1; b < kBodies; ++b) EXPECT_EQ(ride.state.velocity.pitch[b], 0.0);
   }
+}
+
+TEST(Standstill, HoldsWhereItStoppedOnAGrade) {
+  TrackParams slope;
+  slope.grades = {{-1e3, -2.0}};
+  Ride ride(OreWagon(), slope, 80.0 / 3.6);
+  ride.loads_at = EmergencyLoads;
+  while (ride.Speed() > 0.0 && ride.time_s < 300.0) ride.Step(kStep);
+  ASSERT_LT(ride.time_s, 300.0);
+  EXPECT_GT(ride.Distance(), 1000.0);  // down the grade the brake has half its force to spare
+  ride.Run(30.0);                      // the rocking ends
+  const double settled = ride.Distance();
+  double least = ride.Creep(), most = least;
+  for (int second = 0; second < 90; ++second) {
+    ride.Run(1.0);
+    least = std::min(least, ride.Creep());
+    most = std::max(most, ride.Creep());
+  }
+  EXPECT_LT(std::abs(ride.Distance() - settled), 1e-3);  // the project's aim
+  // The rails hold what the grade pulls. What is left of the rocking decays; 1e-4 is 3 N.
+  const double weight_component = 0.02 * ride.wagon.weight_n;
+  EXPECT_NEAR(least, weight_component, 1e-4 * weight_component);
+  EXPECT_NEAR(most, weight_component, 1e-4 * weight_component);
+  EXPECT_NEAR(ride.Creep(), weight_component, 1e-6 * weight_component);
+  for (int b = kWheelset1; b < kBodies; ++b) EXPECT_EQ(ride.state.velocity.pitch[b], 0.0);
+  EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
 }
 
 TEST(Adhesion, WheelsLockOnLowFrictionAndTurnAgainAfterIt) {

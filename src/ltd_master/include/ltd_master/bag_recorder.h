@@ -2,6 +2,7 @@
 
 #include <rosbag/bag.h>
 
+#include <memory>
 #include <string>
 
 #include "ltd_master/conversions.h"
@@ -28,7 +29,7 @@ class BagRecorder {
 
  private:
   std::string file_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_;
   double initial_j_ = 0.0;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;

@@ -9,10 +9,13 @@ namespace ltd_master {
 class Progress {
  public:
   explicit Progress(double duration_s);
-  ~Progress();
+  ~Progress() { Finish(); }
 
   /// Cheap enough for every record.
   void Show(double simulated_s, double mean_speed_mps);
+
+  /// Ends the line on a terminal, so that other output starts on one of its own.
+  void Finish();
 
   double WallSeconds() const;
 

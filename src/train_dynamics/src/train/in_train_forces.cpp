@@ -62,6 +62,17 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
   }
 }
 
+void InTrainForces::AddMemoryTo(Digest& digest) const {
+  for (size_t c = 0; c < type_.size(); ++c) {
+    const ConnectionParams& type = types_[type_[c]];
+    const bool remembers = type.kind == ConnectionKind::kDraftGears &&
+                           type.draft_gear.friction == DraftGearFriction::kStickSpring;
+    if (!remembers) continue;
+    digest.Add(stick_[c].q);
+    digest.Add(stick_[c].force);
+  }
+}
+
 ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
   for (size_t c = 0; c < type_.size(); ++c) {

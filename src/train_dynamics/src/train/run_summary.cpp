@@ -9,8 +9,10 @@
 namespace train_dynamics {
 namespace {
 
-/// A train stands when no vehicle is faster than this [m/s].
+/// A train has stopped when its mean speed has come down to this [m/s]; carbodies may rock on for seconds.
 constexpr double kStandstill = 1e-3;
+/// It is under way again when its mean speed exceeds this [m/s]: more than any rocking.
+constexpr double kMoving = 0.1;
 constexpr double kKmhPerMps = 3.6;
 
 std::string Number(double value) {
@@ -49,32 +51,22 @@ std::string Extreme(const std::vector<ForceExtremes>& extremes, double ForceExtr
 
 }  // namespace
 
-RunSummary::RunSummary(const ScenarioParams& scenario, const Consist& consist) : scenario_(scenario) {
-  for (int i = 0; i < consist.vehicles(); ++i) {
-    mass_kg_.push_back(consist.vehicle(i).TotalMass());
-    total_mass_kg_ += mass_kg_.back();
-  }
-}
-
 void RunSummary::Observe(const TrainRecord& record) {
   const std::vector<double>& speed = record.vehicles.speed_mps;
-  double momentum = 0.0, moment = 0.0;
-  bool standing = true;
-  for (size_t i = 0; i < speed.size(); ++i) {
-    momentum += mass_kg_[i] * speed[i];
-    moment += mass_kg_[i] * record.vehicles.position_m[i];
-    standing = standing && std::abs(speed[i]) < kStandstill;
-  }
-  if (record.exchange == 0) start_position_m_ = moment / total_mass_kg_;
-  mean_speed_mps_ = momentum / total_mass_kg_;
+  vehicles_ = static_cast<int>(speed.size());
+  if (record.exchange == 0) start_position_m_ = record.mean_position_m;
+  mean_speed_mps_ = record.mean_speed_mps;
   lead_speed_mps_ = speed.front();
   tail_speed_mps_ = speed.back();
-  mean_distance_m_ = moment / total_mass_kg_ - start_position_m_;
-  if (standing && !stopped_) {
+  mean_distance_m_ = record.mean_position_m - start_position_m_;
+  const double forward_mps = scenario_.initial_speed_kmh < 0.0 ? -mean_speed_mps_ : mean_speed_mps_;
+  if (!stopped_ && forward_mps <= kStandstill) {
+    stopped_ = true;
     stop_time_s_ = record.time_s;
     stop_distance_m_ = mean_distance_m_;
+  } else if (stopped_ && std::abs(mean_speed_mps_) > kMoving) {
+    stopped_ = false;
   }
-  stopped_ = standing;
   if (record.ledger != nullptr) {
     ledger_ = *record.ledger;
     if (record.exchange == 0) initial_energy_j_ = ledger_.Stored();
@@ -85,12 +77,12 @@ void RunSummary::Observe(const TrainRecord& record) {
 std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
   const double simulated_s = master.time_s();
   const double vehicle_steps = static_cast<double>(master.exchange()) * scenario_.StepsPerExchange() *
-                               static_cast<double>(mass_kg_.size());
+                               vehicles_;
   char digest[20];
   std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
   std::ostringstream json;
   json << "{\n  \"scenario\": " << Quoted(scenario_.name) << ",\n  \"model\": \""
-       << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << mass_kg_.size()
+       << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << vehicles_
        << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
        << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
        << ",\n  \"simulated_s\": " << Number(simulated_s) << ",\n  \"wall_s\": " << Number(wall_s)
@@ -113,7 +105,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_energy_j_)
        << ",\n    \"final_j\": " << Number(ledger_.Stored())
-       << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j) << ",\n    \"dissipated_j\": {";
+       << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j) << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
   const char* separator = "";
   for (const auto& [element, energy] : ledger_.dissipated_j) {
     json << separator << "\n      " << Quoted(element) << ": " << Number(energy);

@@ -21,6 +21,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
       reply_(consist.vehicles(), scenario.DetailedVehicles()),
       acceleration_mps2_(consist.vehicles(), std::numeric_limits<double>::quiet_NaN()) {
+  for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
   request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
@@ -67,17 +68,27 @@ void TrainMaster::ShowRecord() {
   Digest digest;
   digest.Add(digest_);
   for (std::uint64_t vehicle : reply_.state_digest) digest.Add(vehicle);
-  for (const StickState<double>& stick : forces_.stick_states()) digest.Add(stick.force);
+  forces_.AddMemoryTo(digest);
   digest_ = digest.value();
 
   EnergyLedger ledger;
   if (request_.ledger) ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
+  double mass = 0.0, momentum = 0.0, moment = 0.0;
+  for (size_t i = 0; i < mass_kg_.size(); ++i) {
+    mass += mass_kg_[i];
+    momentum += mass_kg_[i] * reply_.speed_mps[i];
+    moment += mass_kg_[i] * reply_.position_m[i];
+  }
+  pressures_(time_s(), record_pressure_pa_);
   const TrainRecord record{time_s(),
                            exchange_,
+                           momentum / mass,
+                           moment / mass,
                            reply_,
                            acceleration_mps2_,
                            request_.coupler_force_n,
                            forces_.extension_m(),
+                           record_pressure_pa_,
                            request_.cylinder_pressure_pa,
                            digest_,
                            request_.ledger ? &ledger : nullptr};

@@ -27,7 +27,7 @@ class LtdBlock : public VehicleBlock {
       state.v_mps = scenario.InitialSpeed();
       states_.push_back(state);
     }
-    shoe_force_n_.assign(count, 0.0);
+    outputs_.resize(count);
   }
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
@@ -39,13 +39,12 @@ class LtdBlock : public VehicleBlock {
       loads.rear_coupler_n = request.coupler_force_n[offset + i + 1];
       loads.cylinder_pressure_pa = request.cylinder_pressure_pa[offset + i];
       LtdState<double>& s = states_[i];
-      for (int step = 0; step < request.steps; ++step)
-        StepLtd(type, track_, integrator_, loads, request.dt_s, s);
+      for (int step = 0; step < request.steps; ++step) {
+        StepLtd(type, track_, integrator_, loads, request.dt_s, s, &outputs_[i]);
+      }
       reply.head_displacement_m[offset + i] = s.x_m;
       reply.head_velocity_mps[offset + i] = s.v_mps;
       sound = sound & IsSound(s);
-      if (request.record)
-        shoe_force_n_[i] = ShoeForce(type.brake_rigging, loads.cylinder_pressure_pa, s.v_mps);
     }
     if (request.record) Report(offset, request.ledger, reply);
     return sound;
@@ -59,9 +58,8 @@ class LtdBlock : public VehicleBlock {
       reply.head_velocity_mps[at] = s.v_mps;
       reply.position_m[at] = s.origin_m + s.x_m;
       reply.speed_mps[at] = s.v_mps;
-      reply.shoe_force_n[at] = shoe_force_n_[i];
-      reply.wheel_force_n[at] = shoe_force_n_[i];
-      reply.creepage[at] = std::numeric_limits<double>::quiet_NaN();
+      reply.shoe_force_n[at] = outputs_[i].shoe_force_n;
+      reply.wheel_force_n[at] = reply.creepage[at] = std::numeric_limits<double>::quiet_NaN();
       Digest digest;
       digest.Add(s.x_m);
       digest.Add(s.v_mps);
@@ -87,7 +85,7 @@ class LtdBlock : public VehicleBlock {
   std::vector<LtdVehicle> types_;
   std::vector<int> type_;
   std::vector<LtdState<double>> states_;
-  std::vector<double> shoe_force_n_;
+  std::vector<LtdOutput<double>> outputs_;
 };
 
 /// Wagons of the 2D train, in one batch for each run of equal vehicles.
@@ -99,10 +97,11 @@ class WagonBlock : public VehicleBlock {
     for (int i = first; i < first + count;) {
       const int type = consist.vehicle_type[i], begin = i;
       const Wagon wagon(consist.vehicle_types[type]);
+      WagonState<double> state = StaticEquilibrium(wagon, 0.0, scenario.InitialSpeed());
       std::vector<WagonState<double>> states;
       for (; i < first + count && consist.vehicle_type[i] == type; ++i) {
-        states.push_back(StaticEquilibrium(wagon, scenario.start_position_m + consist.centre_m[i],
-                                           scenario.InitialSpeed()));
+        state.origin_m = scenario.start_position_m + consist.centre_m[i];
+        states.push_back(state);
       }
       batches_.push_back({begin, WagonBatch(wagon, kernel, states)});
     }

@@ -17,9 +17,10 @@ double CreepStiffnessOf(const VehicleParams& p) {
   return CreepStiffness(ellipse, p.wheel_rail.shear_modulus_pa, c11);
 }
 
-/// Vertical and pitching forces on the bodies at rest, wedges without friction, and their derivatives.
+/// One number per vertical displacement and pitch.
 using VerticalVector = Eigen::Matrix<double, 2 * kBodies, 1>;
 
+/// Vertical and pitching forces on the bodies at rest, wedges without friction.
 VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
   BodyVector<double> position{}, force{};
   for (int i = 0; i < kBodies; ++i) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "train_dynamics/train/consist.h"
+#include "train_dynamics/train/digest.h"
 
 namespace train_dynamics {
 
@@ -50,8 +51,8 @@ class InTrainForces {
   const std::vector<ForceExtremes>& extremes() const { return extremes_; }
   /// Extension of each connection at the last exchange [m].
   const std::vector<double>& extension_m() const { return extension_m_; }
-  /// Memory of stick-spring draft gears; part of the train's state.
-  const std::vector<StickState<double>>& stick_states() const { return stick_; }
+  /// Adds the memory of stick-spring draft gears, which is part of the train's state.
+  void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
 
  private:

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/train/digest.h"
 #include "train_dynamics/vehicle/wagon.h"
 
 /// The exchange between the master, which computes what acts between vehicles, and the ranks, which integrate
@@ -63,8 +64,8 @@ struct ExchangeReply {
 
   std::vector<double> position_m;  ///< record: of the vehicle's centre along the track
   std::vector<double> speed_mps;
-  std::vector<double> shoe_force_n;   ///< of all shoes, retarding positive
-  std::vector<double> wheel_force_n;  ///< longitudinal wheel-rail force, retarding positive
+  std::vector<double> shoe_force_n;   ///< of all shoes, backwards positive
+  std::vector<double> wheel_force_n;  ///< longitudinal wheel-rail force, backwards positive; NaN for LTD
   std::vector<double> creepage;       ///< of the wheelset with the largest size; NaN for LTD
   std::vector<std::uint64_t> state_digest;
   std::vector<VehicleEnergy> energy;  ///< ledger
@@ -85,30 +86,9 @@ class Transport {
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };
 
-/// A run that cannot go on: names the vehicle or connection, the quantity and the time.
+/// A run that cannot go on: names the vehicle, the quantity and the time.
 class SimulationFault : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-/// 64-bit digest of a sequence of numbers, by their bits: equal digests mean equal bits.
-class Digest {
- public:
-  void Add(double value);
-  void Add(std::uint64_t value) { state_ = Mix(state_ ^ value); }
-  std::uint64_t value() const { return state_; }
-
- private:
-  /// A bijection of 64-bit words that changes about half of the bits for each bit of its argument.
-  static constexpr std::uint64_t Mix(std::uint64_t x) {
-    x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
-    x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
-    return x ^ (x >> 32);
-  }
-  std::uint64_t state_ = 0x9e3779b97f4a7c15u;
-};
-
-/// Digest of a text: its length, then its bytes, eight to a word (the first lowest), the last word padded
-/// with zeros.
-std::uint64_t TextDigest(const std::string& text);
 
 }  // namespace train_dynamics

@@ -10,7 +10,7 @@ namespace train_dynamics {
 /// What a run came to. Collected from its records as they pass.
 class RunSummary {
  public:
-  RunSummary(const ScenarioParams& scenario, const Consist& consist);
+  explicit RunSummary(const ScenarioParams& scenario) : scenario_(scenario) {}
 
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
@@ -19,16 +19,12 @@ class RunSummary {
   /// @param fault  why the run ended early; empty: it did not, or was interrupted
   std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
 
-  double MeanSpeed() const { return mean_speed_mps_; }  ///< of the train's momentum, at the last record [m/s]
-  double MeanDistance() const { return mean_distance_m_; }
-
  private:
   const ScenarioParams& scenario_;
-  std::vector<double> mass_kg_;
-  double total_mass_kg_ = 0.0;
   double start_position_m_ = 0.0;  ///< mean
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
+  int vehicles_ = 0;
   bool stopped_ = false;
   double stop_time_s_ = 0.0, stop_distance_m_ = 0.0;
   double initial_energy_j_ = 0.0;

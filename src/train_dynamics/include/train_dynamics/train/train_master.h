@@ -17,18 +17,20 @@ using PressureSource = std::function<void(double time_s, std::vector<double>& pr
 /// The air brake of a scenario, which must have one, as a source of pressures.
 PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
 
-/// The train at the end of an exchange, as it is recorded. Forces and pressures are those of the interval
-/// that ended.
+/// The train at the end of an exchange, as it is recorded. Forces are those of the interval that ended.
 struct TrainRecord {
   double time_s;
   std::uint64_t exchange;  ///< number of exchanges so far
+  double mean_speed_mps;   ///< of the vehicles' momentum
+  double mean_position_m;  ///< of the vehicles' masses
   const ExchangeReply& vehicles;
-  const std::vector<double>& acceleration_mps2;    ///< mean over the record interval; NaN at time 0
-  const std::vector<double>& coupler_force_n;      ///< [vehicles + 1] as in ExchangeRequest
-  const std::vector<double>& coupler_extension_m;  ///< [connections]
-  const std::vector<double>& cylinder_pressure_pa;
-  std::uint64_t state_digest;  ///< chained over all records so far
-  const EnergyLedger* ledger;  ///< null where none is due
+  const std::vector<double>& acceleration_mps2;     ///< mean over the record interval; NaN at time 0
+  const std::vector<double>& coupler_force_n;       ///< [vehicles + 1] as in ExchangeRequest
+  const std::vector<double>& coupler_extension_m;   ///< [connections]
+  const std::vector<double>& cylinder_pressure_pa;  ///< at time_s
+  const std::vector<double>& held_pressure_pa;      ///< of the interval that ended
+  std::uint64_t state_digest;                       ///< chained over all records so far
+  const EnergyLedger* ledger;                       ///< null where none is due
 };
 
 /// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.
@@ -69,6 +71,8 @@ class TrainMaster {
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
   ExchangeReply reply_;
+  std::vector<double> mass_kg_;
+  std::vector<double> record_pressure_pa_;
   std::vector<double> last_speed_mps_, acceleration_mps2_;
   std::vector<Observer> observers_;
 };

@@ -33,6 +33,12 @@ struct LtdState {
   VehicleWork<T> work;
 };
 
+/// What an LTD vehicle shows of its last step, for records.
+template <class T>
+struct LtdOutput {
+  T shoe_force_n{};  ///< of all shoes, as far as it acts; backwards positive
+};
+
 /// How the one degree of freedom is stepped.
 ///
 /// Both use the forces of paper Eq 1 once per step and are symplectic; they sample the same trajectory half a
@@ -50,9 +56,10 @@ enum class LtdIntegrator {
 ///
 /// Brakes and resistance are set-valued at rest: the projection holds a standing vehicle exactly, on any
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
+/// @param output  receives what the step shows; may be null
 template <class T>
 void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
-             const VehicleLoads<T>& loads, double dt, LtdState<T>& s);
+             const VehicleLoads<T>& loads, double dt, LtdState<T>& s, LtdOutput<T>* output = nullptr);
 
 /// Kinetic energy [J]; the only store of energy in an LTD vehicle.
 template <class T>
@@ -64,7 +71,7 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 
 template <class T>
 void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
-             const VehicleLoads<T>& loads, double dt, LtdState<T>& s) {
+             const VehicleLoads<T>& loads, double dt, LtdState<T>& s, LtdOutput<T>* output) {
   const T v0 = s.v_mps;
   const double drift = integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
   s.x_m = s.x_m + drift * v0;
@@ -84,6 +91,7 @@ void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator 
 
   const T path = 0.5 * dt * (v0 + v1);  // force x path = exact change of kinetic energy
   const T mobilised = (free - v1) / Max(T(1e-300), per_inertia * retarding);  // -1 ... 1
+  if (output != nullptr) output->shoe_force_n = shoes * mobilised;
   VehicleWork<T>& work = s.work;
   work.gravity = work.gravity + gravity * path;
   work.traction = work.traction + loads.traction_n * path;
