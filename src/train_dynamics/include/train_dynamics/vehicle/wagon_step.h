@@ -114,62 +114,70 @@ void Kick(const Wagon& w, const BodyVector<T>& force, double dt, int begin, int 
   }
 }
 
+/// What acts on the wagon from outside in a step.
 template <class T>
-void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T>& s, WagonOutput<T>* output) {
+struct OuterForces {
+  T grade;                                   ///< of the track [-]
+  T coupler;                                 ///< of both couplers together, forward positive [N]
+  T drag;                                    ///< of the air on the carbody, backwards positive [N]
+  T shoes, rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
+  T traction;                                ///< at one wheelset, forward positive [N]
+};
+
+/// Outer forces with the carbody at the middle of the step and its speed at the start.
+template <class T>
+OuterForces<T> OuterForcesOn(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads,
+                             const WagonState<T>& s) {
   const VehicleParams& p = w.params;
-  const BodyVector<T> v0 = s.velocity;
-  BodyVector<T>& v1 = s.velocity;
-  Drift(v0, 0.5 * dt, s.position);
+  const T speed = s.velocity.x[kCarbody];
+  OuterForces<T> outer;
+  outer.grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
+  outer.coupler = loads.front_coupler_n - loads.rear_coupler_n;
+  outer.drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
+  outer.shoes = 0.25 * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  outer.rolling = 0.25 * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
+  outer.dynamic_brake = 0.25 * loads.dynamic_brake_n;
+  outer.curving = 0.25 * loads.curving_resistance_n;
+  outer.traction = 0.25 * loads.traction_n;
+  return outer;
+}
 
-  // Compliant forces at the middle of the step.
-  const ElementVector<T> deflection = ElementsOf(w, s.position);
-  const ElementVector<T> rate0 = ElementsOf(w, v0);
-  const ElementVector<T> elastic = ElasticForces(w, deflection);
-  const ElementVector<T> damping = DampingForces(w, deflection, elastic, rate0);
-  const RailForces<T> rail = ContactForces(w, track, s);
-  BodyVector<T> force;
-  AddElementForces(w, elastic, force);
-  AddElementForces(w, damping, force);
-
-  // Weight, couplers and drag.
-  const T grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
+/// Adds weight, couplers and drag to the bodies' forces.
+template <class T>
+void AddOuterForces(const Wagon& w, const OuterForces<T>& outer, BodyVector<T>& force) {
   for (int i = 0; i < kBodies; ++i) {
     const double weight = kGravity * w.mass_kg[i];
-    force.x[i] = force.x[i] - weight * grade;
+    force.x[i] = force.x[i] - weight * outer.grade;
     force.z[i] = force.z[i] - weight;
   }
-  const T speed = v0.x[kCarbody];
-  const T coupler = loads.front_coupler_n - loads.rear_coupler_n;
-  const T drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
-  force.x[kCarbody] = force.x[kCarbody] + (coupler - drag);
-  force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * coupler;
+  force.x[kCarbody] = force.x[kCarbody] + (outer.coupler - outer.drag);
+  force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * outer.coupler;
+}
 
-  // Carbody, bolsters and frames, with the wedges' friction.
-  Kick(w, force, dt, kCarbody, kWheelset1, v1);
-  ElementVector<T> wedges{};
-  wedges.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
-  BodyVector<T> friction_force;
-  AddElementForces(w, wedges, friction_force);
-  Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
+/// Sums over the wheelsets of a step.
+template <class T>
+struct WheelsetWork {
+  T creep{}, contact{};             ///< energy lost in creep and in the contacts' dampers [J]
+  T brake_path{}, traction_path{};  ///< way at the tread, times the share of the brake torque that acts [m]
+};
 
-  // Wheelsets.
-  const T shoes = 0.25 * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
-  const T rolling = 0.25 * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
-  const T dynamic_brake = 0.25 * loads.dynamic_brake_n;
-  const T curving = 0.25 * loads.curving_resistance_n;
-  const T retarding = shoes + rolling + dynamic_brake + curving;
-  const T traction = 0.25 * loads.traction_n;
+/// Velocities of the wheelsets after the step.
+/// @param force  on the wheelsets, without the rail's [N]
+template <class T>
+WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const OuterForces<T>& outer,
+                              const BodyVector<T>& force, double dt, const BodyVector<T>& v0,
+                              BodyVector<T>& v1, WagonOutput<T>* output) {
+  const WheelRailParams& contact = w.params.wheel_rail;
   const double r = w.rolling.radius_m;
-  const double v_ref = p.wheel_rail.creepage_regularisation_speed_mps;
-  VehicleWork<T>& work = s.work;
-  T creep_loss(0.0), contact_loss(0.0), brake_path(0.0), traction_path(0.0);
+  const double v_ref = contact.creepage_regularisation_speed_mps;
+  const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
+  WheelsetWork<T> work;
   for (int i = 0; i < kWheelsets; ++i) {
     const int b = kWheelset1 + i;
-    const CreepLaw<T> law = FreezeCreepLaw(p.wheel_rail.adhesion, w.creep_stiffness, rail.normal[i],
-                                           rail.friction[i], v0.x[b], v_ref);
+    const CreepLaw<T> law =
+        FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
-    const RollingInput<T> in{v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * traction,
+    const RollingInput<T> in{v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
                              r * retarding};
     const RollingResult<T> out = StepRolling(w.rolling, law, in, dt);
     v1.x[b] = out.speed;
@@ -180,53 +188,94 @@ void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& 
     const T moved = 0.5 * dt * (v0.x[b] + out.speed);
     const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
     const T mobilised = out.brake_torque / Max(T(1e-300), in.brake_torque);  // -1 ... 1
-    creep_loss = creep_loss + out.creep_force * (moved - r * turned);
-    contact_loss = contact_loss + rail.damping[i] * (rail.slope[i] * moved - lifted);
-    brake_path = brake_path + mobilised * r * turned;
-    traction_path = traction_path + r * turned;
+    work.creep = work.creep + out.creep_force * (moved - r * turned);
+    work.contact = work.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
+    work.brake_path = work.brake_path + mobilised * r * turned;
+    work.traction_path = work.traction_path + r * turned;
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
       output->creep_force_n[i] = out.creep_force;
       output->creepage[i] = (out.speed - r * out.spin) / Sqrt(out.speed * out.speed + v_ref * v_ref);
-      output->shoe_force_n[i] = shoes * mobilised;
+      output->shoe_force_n[i] = outer.shoes * mobilised;
     }
   }
-  if (output != nullptr) output->wedge_friction_n = wedges.wedge;
+  return work;
+}
 
-  Drift(v1, 0.5 * dt, s.position);
-
-  // The ledger: force x mean rate x dt, element by element.
+/// Books the work of a step: force x mean rate x dt, element by element.
+/// @param dissipative  forces of the dampers and of the wedges' friction
+template <class T>
+void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>& wheelsets,
+              const ElementVector<T>& dissipative, const ElementVector<T>& rate0, double dt,
+              const BodyVector<T>& v0, const BodyVector<T>& v1, VehicleWork<T>& work) {
   const ElementVector<T> rate1 = ElementsOf(w, v1);
   const auto lost = [dt](const T& f, const T& r0, const T& r1) { return 0.5 * dt * f * (r0 + r1); };
-  T pads(0.0), wedge_loss(0.0), guides(0.0), plates(0.0);
+  T pads(0.0), wedges(0.0), guides(0.0), plates(0.0);
   for (int i = 0; i < 4; ++i) {
-    pads = pads + lost(damping.pad_x[i], rate0.pad_x[i], rate1.pad_x[i]) +
-           lost(damping.pad_z[i], rate0.pad_z[i], rate1.pad_z[i]);
-    wedge_loss = wedge_loss + lost(wedges.wedge[i], rate0.wedge[i], rate1.wedge[i]);
-    plates = plates + lost(damping.rim[i], rate0.rim[i], rate1.rim[i]);
+    pads = pads + lost(dissipative.pad_x[i], rate0.pad_x[i], rate1.pad_x[i]) +
+           lost(dissipative.pad_z[i], rate0.pad_z[i], rate1.pad_z[i]);
+    wedges = wedges + lost(dissipative.wedge[i], rate0.wedge[i], rate1.wedge[i]);
+    plates = plates + lost(dissipative.rim[i], rate0.rim[i], rate1.rim[i]);
   }
   for (int b = 0; b < kBogies; ++b) {
-    guides = guides + lost(damping.guide_x[b], rate0.guide_x[b], rate1.guide_x[b]);
-    plates = plates + lost(damping.plate_x[b], rate0.plate_x[b], rate1.plate_x[b]);
+    guides = guides + lost(dissipative.guide_x[b], rate0.guide_x[b], rate1.guide_x[b]);
+    plates = plates + lost(dissipative.plate_x[b], rate0.plate_x[b], rate1.plate_x[b]);
   }
-  T momentum_path(0.0);  // sum of weight x path: the grade acts on every body
-  for (int i = 0; i < kBodies; ++i) momentum_path = momentum_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
+  T mass_path(0.0);  // sum of mass x (v0 + v1): the grade acts on every body
+  for (int i = 0; i < kBodies; ++i) mass_path = mass_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
+
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
   };
-  book(kWheelRailCreep, creep_loss);
-  book(kWheelRailNormal, contact_loss);
+  book(kWheelRailCreep, wheelsets.creep);
+  book(kWheelRailNormal, wheelsets.contact);
   book(kAdaptorPads, pads);
-  book(kFrictionWedges, wedge_loss);
+  book(kFrictionWedges, wedges);
   book(kBolsterGuides, guides);
   book(kCentrePlates, plates);
-  book(kBrakeShoes, shoes * brake_path);
-  book(kDynamicBrake, dynamic_brake * brake_path);
-  book(kRollingResistance, rolling * brake_path);
-  book(kCurvingResistance, curving * brake_path);
-  book(kAirDrag, lost(drag, v0.x[kCarbody], v1.x[kCarbody]));
-  work.gravity = work.gravity - (0.5 * dt * kGravity) * grade * momentum_path;
-  work.traction = work.traction + traction * traction_path;
+  book(kBrakeShoes, outer.shoes * wheelsets.brake_path);
+  book(kDynamicBrake, outer.dynamic_brake * wheelsets.brake_path);
+  book(kRollingResistance, outer.rolling * wheelsets.brake_path);
+  book(kCurvingResistance, outer.curving * wheelsets.brake_path);
+  book(kAirDrag, lost(outer.drag, v0.x[kCarbody], v1.x[kCarbody]));
+  work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
+  work.traction = work.traction + outer.traction * wheelsets.traction_path;
+}
+
+template <class T>
+void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T>& s, WagonOutput<T>* output) {
+  const BodyVector<T> v0 = s.velocity;
+  BodyVector<T>& v1 = s.velocity;
+  Drift(v0, 0.5 * dt, s.position);
+
+  // Forces at the middle of the step.
+  const ElementVector<T> deflection = ElementsOf(w, s.position);
+  const ElementVector<T> rate0 = ElementsOf(w, v0);
+  const ElementVector<T> elastic = ElasticForces(w, deflection);
+  ElementVector<T> dissipative = DampingForces(w, deflection, elastic, rate0);
+  const RailForces<T> rail = ContactForces(w, track, s);
+  const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
+  BodyVector<T> force;
+  AddElementForces(w, elastic, force);
+  AddElementForces(w, dissipative, force);
+  AddOuterForces(w, outer, force);
+
+  // Carbody, bolsters and frames, then the wedges' friction on these.
+  Kick(w, force, dt, kCarbody, kWheelset1, v1);
+  ElementVector<T> friction{};
+  friction.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
+  BodyVector<T> friction_force;
+  AddElementForces(w, friction, friction_force);
+  Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
+
+  const WheelsetWork<T> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
+  if (output != nullptr) output->wedge_friction_n = friction.wedge;
+
+  Drift(v1, 0.5 * dt, s.position);
+
+  dissipative.wedge = friction.wedge;
+  BookWork(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
 }
 
 }  // namespace train_dynamics
