@@ -18,10 +18,10 @@ namespace wagon_node {
 
 /// A process of the distributed train. Which vehicles it hosts, it learns from the train's master.
 ///
-///   services    ~configure, ~step           see Configure.srv, Step.srv
-///   publishes   wagon_NNN/state             in the node's namespace: its vehicles in full detail, every
-///   record parameters  ~threads                    default 1
-///               ~master_timeout_s           default 8: leave after so long without a master; 0: never
+///   services    ~configure, ~step   see Configure.srv, Step.srv
+///   publishes   wagon_NNN/state     its vehicles in full detail, at every record; in the node's namespace
+///   parameters  ~threads            default 1
+///               ~master_timeout_s   default 8: leave after so long without a master; 0: never
 ///
 /// A master is there as long as the connection over which it configured this node is open, which costs
 /// nothing to watch and also holds for a master that is paused, stopped in a debugger or slow. A node that

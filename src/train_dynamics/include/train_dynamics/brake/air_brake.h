@@ -142,8 +142,7 @@ struct BrakeCommand {
 class AirBrake {
  public:
   /// @param vehicle_positions_m  centre of each vehicle on the unstretched train, any origin, front to rear
-  /// @throws std::invalid_argument if a source stands outside the train, a reduction lies outside the
-  /// measured
+  /// @throws std::invalid_argument if a source stands outside the train, a reduction lies outside the measured
   ///         range, times do not ascend, or an emergency rise rate falls to zero within the train.
   AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
            const std::vector<double>& vehicle_positions_m);

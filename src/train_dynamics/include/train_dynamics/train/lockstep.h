@@ -12,11 +12,10 @@
 /// The exchange between the master, which computes what acts between vehicles, and the ranks, which integrate
 /// them.
 ///
-///   at the start      master -> rank   which vehicles, their parameters, the track     (Start)
+///   at the start      master -> rank   which vehicles, their parameters, the track              (Start)
 ///                     rank -> master   their state at time 0, as a record
-///   exchange k        master -> rank   k, dt, steps, coupler forces, cylinder pressures  (ExchangeRequest)
-///                     rank -> master   coupler heads at the interval's end; a record when asked
-///                     (ExchangeReply)
+///   exchange k        master -> rank   k, dt, steps, coupler forces, cylinder pressures         (ExchangeRequest)
+///                     rank -> master   coupler heads at the interval's end; a record when asked (ExchangeReply)
 ///   barrier           the master has every reply before it computes exchange k + 1
 ///
 /// Forces and pressures are those of the middle of the interval and are held over it. All sums over vehicles

@@ -8,11 +8,9 @@ namespace train_dynamics {
 ///
 ///   1. half drift: positions to the middle of the step;
 ///   2. compliant forces there, dampers at the rates of the step's start (largest elastic frequency about
-///   1000 1/s, so
-///      that 1 ms is inside the explicit limit), weight, couplers, drag;
-///   3. kick of carbody, bolsters and frames, with the wedges' set-valued friction as a complementarity
-///   problem on the
-///      relative rates at the END of the step: they stick or slip without chatter;
+///      1000 1/s, so that 1 ms is inside the explicit limit), weight, couplers, drag;
+///   3. kick of carbody, bolsters and frames, with the wedges' set-valued friction as a complementarity problem
+///      on the relative rates at the END of the step: they stick or slip without chatter;
 ///   4. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
 ///   5. half drift.
 ///
