@@ -197,7 +197,10 @@ class DistributedTrain(unittest.TestCase):
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         launch = self.launch("nodes:=2", "start_paused:=true", "real_time_factor:=1")
         rospy.wait_for_service("/train/master/resume", 60)
-        time.sleep(2.0)  # for the recorder to find the topic
+        graph = rosgraph.Master("/distributed_train")
+        self.assertTrue(wait_until(
+            lambda: any(t == "/train/state" and "/beside" in nodes for t, nodes in graph.getSystemState()[1]), 30))
+        time.sleep(1.0)  # for the connection itself
         self.assertTrue(rospy.ServiceProxy("/train/master/resume", Trigger)().success)
         self.assertEqual(0, launch.wait(), launch.log.read_text())
         time.sleep(1.0)

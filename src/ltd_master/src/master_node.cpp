@@ -82,6 +82,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
     : options_(options),
       scenario_(train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
       control_(options.start_paused) {
+  for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
   const int vehicles = scenario_.consist.vehicles();
   if (options.vehicles != 0 && options.vehicles != vehicles) {
     throw std::invalid_argument(

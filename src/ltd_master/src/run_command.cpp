@@ -23,7 +23,9 @@ using train_dynamics::config::LoadedScenario;
 LoadedScenario Load(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.model.empty()) overrides.push_back("model=" + options.model);
-  return train_dynamics::config::LoadScenario(options.scenario, overrides);
+  LoadedScenario scenario = train_dynamics::config::LoadScenario(options.scenario, overrides);
+  for (const std::string& warning : scenario.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  return scenario;
 }
 
 /// As asked for; else one per core for the 2D model, and one for LTD, whose exchanges are shorter than a

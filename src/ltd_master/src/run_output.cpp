@@ -13,13 +13,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// First line of the config.yaml of a run: the mark of a folder that holds results of ours and nothing of the user's.
-constexpr const char* kMark = "# A run of train_brake: everything resolved. Running it again gives the same bits.";
+constexpr const char* kMark =
+    "# A run of train_brake: everything resolved. Running it again gives the same bits.";
 
 fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
 
 bool IsResult(const std::string& name) {
   static const std::regex pattern(
-      "train\\.bag(\\.active)?|(summary\\.json|config\\.yaml)(\\.unfinished)?|pressure_table\\.csv|train_history\\.csv|"
+      "train\\.bag(\\.active)?|(summary\\.json|config\\.yaml)(\\.unfinished)?|pressure_table\\.csv|train_"
+      "history\\.csv|"
       "pressures\\.csv|couplers\\.csv|vehicles\\.csv|wagon_[0-9]+\\.csv");
   return std::regex_match(name, pattern);
 }

@@ -35,7 +35,7 @@ void Validator::Integers(const char* key, const std::vector<int>& values, const 
   }
 }
 
-void Validator::Check(bool ok, const char* key, const std::string& rule) {
+void Validator::Check(bool ok, const std::string& key, const std::string& rule, const Keys& /*reads*/) {
   if (!ok && errors_.size() == first_error_) Report(key, rule);
 }
 

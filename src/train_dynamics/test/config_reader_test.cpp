@@ -729,7 +729,8 @@ TEST_F(PartsTest, UnknownReferences) {
       Errors(),
       "scenarios/a.yaml:2: parts[0] names 'b', but there is no folder assemblies in scenarios or above it, "
       "nor in " +
-          WithoutFolder(options.search_roots[0].string()));
+          WithoutFolder(options.search_roots[0].string()) +
+          "; or give a file, or set TRAIN_BRAKE_CONFIG to the config folder of train_brake");
 }
 
 TEST_F(PartsTest, ErrorsInAPartNameItsFileAndTheWholePath) {

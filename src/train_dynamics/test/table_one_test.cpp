@@ -37,7 +37,8 @@ TEST_P(TableOne, FinalSpeedsAndLedgersOfAllModels) {
   const Outcome two_d = Simulate(row.scenario, {"model=2d"});
   EXPECT_NEAR(two_d.mean_speed_kmh, row.two_d_kmh, row.two_d_tolerance_kmh);
   ExpectLedgerCloses(two_d, "2d");
-  // Wheels that roll with a creepage of 1e-4 lose as much speed as wheels that roll without, by that order.
+  // With one brake and one resistance, only creep and suspension part the two; what creep takes, the shoes on
+  // the slower wheels do not. A unit of the table's last digit.
   EXPECT_NEAR(two_d.mean_speed_kmh, ltd.mean_speed_kmh, 0.01);
   for (const Outcome& run : {ltd, two_d}) {
     EXPECT_GT(DissipatedBy(run.ledger, "draft_gears"), 0.0);

@@ -78,9 +78,9 @@ TEST(WagonModes, PitchIsThatOfACarbodyOnTwoBogies) {
       std::sqrt(2.0 * (bogie * a * a + bolster_turning) / inertia) / (2.0 * std::acos(-1.0));
   const WagonMode& pitch = Modes().modes[1];
   EXPECT_GT(pitch.energy_share.pitch[kCarbody], 0.9);
-  // Left out, each less than 0.1 %: the plates give 3 % of the travel, the frames take up 11 % of it, and the
-  // bolsters turn 1 % less than the carbody. Without its bolsters or without its bogies' following, the
-  // closed form would be 1 % too high.
+  // Left out, each less than 0.1 %: the plates give 3 % of the travel, the frames take part in 11 % of it, the
+  // bolsters turn 1 % less than the carbody. (Without the bolsters' travel or without the bogies' following the
+  // closed form would be 1 % too high.)
   EXPECT_NEAR(pitch.frequency_hz, pitch_hz, 0.002 * pitch_hz);
 }
 

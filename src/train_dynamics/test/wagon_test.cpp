@@ -267,13 +267,19 @@ std::vector<Sample> Stop(double duration, double dt) {
 TEST(Stop, OneMillisecondIsFineEnough) {
   const std::vector<Sample> coarse = Stop(90.0, kStep), fine = Stop(90.0, kFineStep);
   EXPECT_NEAR(coarse.back().distance, fine.back().distance, 0.010);  // the project's aim; 1 mm is what it is
-  for (size_t ms = 1000; ms < coarse.size() && fine[ms].speed > 0.3; ++ms) {
-    // The aim is 50 N; implicit creep gives 1 N of 14 kN while the brake slows the wagon, from the end of the
-    // first second down to 0.3 m/s. (An explicit step would be wrong by tens of kilonewtons, see
-    // wheelset_slip_test.) Not covered: the first second, in which the pads settle, and the stop. There the
-    // two wagons lock their wheels at instants that differ by a fraction of a step, and the rocking that
-    // follows differs by hundreds of newtons for some tenths of a second (docs/validation.md, "Step size").
-    ASSERT_NEAR(coarse[ms].creep, fine[ms].creep, 2.0) << ms << " ms";
+  const size_t stop =
+      std::find_if(fine.begin(), fine.end(), [](const Sample& s) { return s.speed <= 0.0; }) - fine.begin();
+  ASSERT_LT(stop + 10000, fine.size());
+  for (size_t ms = 0; ms < fine.size(); ++ms) {
+    // Left out is the stop, from 10 ms before it to 2 s after it: the wheels lock up to a step apart, the wagon
+    // rocks with 15 kN at the wheels, and middles of steps half a millisecond apart see forces that differ by
+    // up to 450 N (docs/validation.md, "Step size").
+    if (ms + 10 > stop && ms < stop + 2000) continue;
+    // The aim is 50 N. Implicit creep gives 1 N of 14 kN once the resistance, which sets in suddenly, has
+    // shaken the pads in the first second. (An explicit step would be wrong by tens of kilonewtons, see
+    // wheelset_slip_test.)
+    const bool steady = ms >= 1000 && ms < stop;
+    ASSERT_NEAR(coarse[ms].creep, fine[ms].creep, steady ? 2.0 : 50.0) << ms << " ms";
   }
 }
 
@@ -359,8 +365,8 @@ TEST(Standstill, HoldsWhereItStoppedOnAGrade) {
   ride.loads_at = EmergencyLoads;
   while (ride.Speed() > 0.0 && ride.time_s < 300.0) ride.Step(kStep);
   ASSERT_LT(ride.time_s, 300.0);
-  EXPECT_GT(ride.Distance(), 1000.0);  // down the grade the brake has half its force to spare
-  ride.Run(30.0);                      // the rocking ends
+  EXPECT_GT(ride.Distance(), 1.5 * 880.0);  // the grade takes half of the brake: 880 m are level track's
+  ride.Run(30.0);                           // the rocking ends
   const double settled = ride.Distance();
   double least = ride.Creep(), most = least;
   for (int second = 0; second < 90; ++second) {
@@ -369,11 +375,10 @@ TEST(Standstill, HoldsWhereItStoppedOnAGrade) {
     most = std::max(most, ride.Creep());
   }
   EXPECT_LT(std::abs(ride.Distance() - settled), 1e-3);  // the project's aim
-  // The rails hold what the grade pulls. What is left of the rocking decays; 1e-4 is 3 N.
+  // The rails hold what the grade pulls, all the time; 1e-6 is 0.03 N, what is left of the rocking.
   const double weight_component = 0.02 * ride.wagon.weight_n;
-  EXPECT_NEAR(least, weight_component, 1e-4 * weight_component);
-  EXPECT_NEAR(most, weight_component, 1e-4 * weight_component);
-  EXPECT_NEAR(ride.Creep(), weight_component, 1e-6 * weight_component);
+  EXPECT_NEAR(least, weight_component, 1e-6 * weight_component);
+  EXPECT_NEAR(most, weight_component, 1e-6 * weight_component);
   for (int b = kWheelset1; b < kBodies; ++b) EXPECT_EQ(ride.state.velocity.pitch[b], 0.0);
   EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 /// The vocabulary in which every parameter struct describes itself.
 ///
@@ -25,6 +26,10 @@
 ///   Part(key, Struct&, kind)  a nested map that may also be a name or a file in the folder `kind`
 ///   Parts(key, std::vector<Struct>&, kind)      a list of them
 ///   Check(bool ok, key, rule) a rule between fields; only judged when the fields themselves are right
+///   Check(bool ok, key, rule, {"other_key", ...})   the same; judged when `key` and these keys are right,
+///                             whatever else is wrong. Numbers among them are shown where the rule names
+///                             them.
+/// The key of a Check may lead further down: "commands[1].reduction_kpa".
 ///
 /// Group and Part also take a std::optional<Struct>, which stays as it is when the key is absent.
 ///
@@ -61,6 +66,9 @@ inline constexpr Range kFraction{0.0, 1.0, false, false};
 /// What a Choice chooses from: each word that may be written and the value that it stands for.
 template <class Enum>
 using Choices = std::initializer_list<std::pair<const char*, Enum>>;
+
+/// The other keys that a rule reads.
+using Keys = std::vector<const char*>;
 
 /// The shortest decimal text that reads back to exactly the same double, whatever the locale: 0.1 is "0.1".
 std::string ShortestDecimal(double value);

@@ -19,7 +19,7 @@ class Validator {
   void Text(const char*, const std::string&) {}
   void Numbers(const char* key, const std::vector<double>& values, const Range& range);
   void Integers(const char* key, const std::vector<int>& values, const Range& range);
-  void Check(bool ok, const char* key, const std::string& rule);
+  void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
 
   template <class Enum>
   void Choice(const char* key, Enum value, Choices<Enum> choices) {

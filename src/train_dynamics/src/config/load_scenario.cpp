@@ -1,12 +1,23 @@
 #include "train_dynamics/config/load_scenario.h"
 
+#include <charconv>
+#include <cmath>
+#include <exception>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/config/csv_table.h"
 #include "train_dynamics/config/reader.h"
+#include "train_dynamics/config/writer.h"
+#include "train_dynamics/contact/kalker.h"
+#include "train_dynamics/vehicle/wagon_modes.h"
 
 namespace train_dynamics::config {
 namespace {
@@ -46,30 +57,104 @@ PressureSource ReadPressureTable(const std::string& file, int vehicles) {
   }
 }
 
+/// The wagon of a vehicle; or none, after reporting which of its parameters do not make one.
+/// @param path  of the vehicle with a dot at its end; empty for the root
+std::optional<Wagon> BuildWagon(const VehicleParams& vehicle, const std::string& path, Reader& rules) {
+  std::optional<Wagon> wagon;
+  const HertzParams& hertz = vehicle.wheel_rail.hertz;
+  const double radius_m = vehicle.wheelset.wheel_radius_m;
+  struct Step {
+    const char *key, *complaint;
+    std::function<void()> build;
+  };
+  const std::string no_contact = "gives no contact with wheelset.wheel_radius_m " + ShortestDecimal(radius_m);
+  const Step steps[] = {
+      {"wheel_rail.hertz", no_contact.c_str(),
+       [&] {
+         const ContactEllipse ellipse = HertzEllipse(hertz, radius_m);
+         KalkerC11(ellipse.a_per_cbrt_n / ellipse.b_per_cbrt_n, hertz.poisson_ratio);
+       }},
+      {"wheel_rail", "makes no wagon", [&] { wagon.emplace(vehicle); }},
+      {"spring_nest", "cannot be used", [&] { StaticEquilibrium(*wagon, 0.0, 0.0); }},
+  };
+  for (const Step& step : steps) {
+    try {
+      step.build();
+    } catch (const std::exception& error) {
+      rules.Check(false, path + step.key, std::string(step.complaint) + ": " + error.what());
+      return std::nullopt;
+    }
+  }
+  return wagon;
+}
+
+/// A number >= 0 rounded down to three digits.
+std::string RoundedDown(double value) {
+  if (!(value > 0.0)) return "0";
+  double unit = 1.0;
+  while (unit > 0.01 * value) unit *= 0.1;
+  char text[32];
+  const std::to_chars_result end =
+      std::to_chars(text, text + sizeof text, std::floor(value / unit) * unit, std::chars_format::general, 3);
+  return std::string(text, end.ptr);
+}
+
+void JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
+  if (scenario.model != VehicleModel::kTwoD) return;
+  double largest_step_s = std::numeric_limits<double>::infinity();
+  std::string stiffest;
+  std::set<std::string> judged;
+  for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
+    if (!judged.insert(Write(vehicle)).second) continue;
+    const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";
+    const std::optional<Wagon> wagon = BuildWagon(vehicle, path + ".", rules);
+    if (!wagon) continue;
+    const double step_s = AnalyseModes(*wagon).largest_stable_step_s;
+    if (step_s >= largest_step_s) continue;
+    largest_step_s = step_s;
+    stiffest = vehicle.name.empty() ? path : "vehicle " + vehicle.name;
+  }
+  rules.Check(scenario.dt_s <= largest_step_s, "dt_s",
+              "must be at most " + RoundedDown(largest_step_s) + ", the largest stable step of " + stiffest +
+                  " (train_sim modes)");
+}
+
 }  // namespace
 
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
-  ErrorList errors;
-  ScenarioParams params = Load<ScenarioParams>(file, OptionsFor(overrides, "scenarios"), errors);
-  ThrowIfAny(errors);
-  Consist consist(params.train);
-  try {
+  std::optional<Consist> consist;
+  PressureSource pressures;
+  const auto judge = [&](ScenarioParams& params, Reader& rules) {
+    JudgeWagons(params, rules);
+    consist.emplace(params.train);
     if (!params.pressure_table.empty()) {
-      const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-      params.pressure_table = (folder / params.pressure_table).string();
-      PressureSource table = ReadPressureTable(params.pressure_table, consist.vehicles());
-      return {std::move(params), std::move(consist), std::move(table)};
+      params.pressure_table = (rules.FolderOf("pressure_table") / params.pressure_table).lexically_normal();
+      return;
     }
-    PressureSource brake = AirBrakePressures(params, consist);
-    return {std::move(params), std::move(consist), std::move(brake)};
-  } catch (const std::invalid_argument& e) {
-    errors.Add(file, 0, "brake", e.what());
-    throw Error(errors);
+    try {
+      pressures = AirBrakePressures(params, *consist);
+    } catch (const std::invalid_argument& error) {
+      rules.Check(false, "brake", std::string("does not suit the train: ") + error.what());
+    }
+  };
+  ErrorList errors;
+  ScenarioParams params = Load<ScenarioParams>(file, OptionsFor(overrides, "scenarios"), errors, judge);
+  ThrowIfAny(errors);
+  if (!params.pressure_table.empty()) {
+    pressures = ReadPressureTable(params.pressure_table, consist->vehicles());
   }
+  std::vector<std::string> warnings = Warnings(params);
+  return {std::move(params), std::move(*consist), std::move(pressures), std::move(warnings)};
 }
 
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides) {
-  return Load<VehicleParams>(file, OptionsFor(overrides, "vehicles"));
+  ErrorList errors;
+  VehicleParams vehicle =
+      Load<VehicleParams>(file, OptionsFor(overrides, "vehicles"), errors,
+                          [](VehicleParams& params, Reader& rules) { BuildWagon(params, "", rules); });
+  ThrowIfAny(errors);
+  return vehicle;
 }
 
 }  // namespace train_dynamics::config

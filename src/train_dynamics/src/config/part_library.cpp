@@ -194,6 +194,7 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
     text += ", but there is no folder " + kind + " in " +
             DisplayPath(reference.source.document->search_from) + " or above it";
     for (const fs::path& root : search_roots_) text += ", nor in " + DisplayPath(root);
+    text += "; or give a file, or set TRAIN_BRAKE_CONFIG to the config folder of train_brake";
   } else {
     text += ", but there is no " + reference.text + kExtension + " in " + Join(searched, searched.size());
     const std::string nearest = Nearest(reference.text, names);

@@ -1,6 +1,7 @@
 #include "train_dynamics/config/reader.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -22,24 +23,78 @@ std::string FirstStep(const std::string& rest) {
   return begin == std::string::npos ? "" : rest.substr(begin, rest.find_first_of(".[]", begin) - begin);
 }
 
+bool IsIn(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Where a text holds a key as a whole word, or npos.
+std::size_t FindKey(const std::string& text, const std::string& key) {
+  const auto goes_on = [&text](std::size_t i) {
+    return i < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.');
+  };
+  std::size_t at = text.find(key);
+  while (at != std::string::npos && ((at > 0 && goes_on(at - 1)) || goes_on(at + key.size())))
+    at = text.find(key, at + 1);
+  return at;
+}
+
 }  // namespace
 
+ReadSession::Spot ReadSession::Locate(const std::string& path) {
+  // The innermost map above the path that a struct was read from.
+  std::size_t end = path.size();
+  auto owner = read.end();
+  while (owner == read.end() && end > 0) {
+    const std::size_t step = path.find_last_of(".[", end - 1);
+    end = step == std::string::npos ? 0 : step;
+    owner = read.find(path.substr(0, end));
+  }
+  if (owner == read.end()) return {};
+  Spot spot{owner->second.source, nullptr, {path, owner->second.part}};
+
+  // From there one key, and an index where it leads into a list.
+  const std::string key = FirstStep(path.substr(end));
+  const std::size_t key_end = path.find(key, end) + key.size();
+  const Entry* const entry = owner->second.map ? owner->second.map->Find(key) : nullptr;
+  spot.value = overrides.Take(path.substr(0, key_end));
+  if (!spot.value && entry) spot.value = entry->value;
+  if (spot.value && spot.value->kind == Node::Kind::kList && key_end < path.size()) {
+    const std::string index = FirstStep(path.substr(key_end));
+    const NodePtr given = overrides.Take(path.substr(0, path.find(']', key_end) + 1));
+    spot.value = given ? given : spot.value->items.at(std::stoul(index));
+  }
+  if (spot.value) spot.source = spot.value->source;
+  return spot;
+}
+
 Reader::Reader(ReadSession& session, const Place& place)
-    : session_(session), place_(place), errors_before_(session.errors.reports()) {}
+    : session_(session),
+      place_(place),
+      errors_before_(session.errors.reports()),
+      errors_before_key_(errors_before_) {
+  session.read[place.path.text] = {place.map, place.source, place.path.part};
+}
 
 void Reader::Number(const char* key, double& value, const Range& range) {
   if (const Value found = Find(key)) {
     if (const std::optional<double> number = ReadNumber(found, key, range)) value = *number;
+    NoteNumber(key, value, false);
   } else if (std::isnan(value)) {
     ReportMissing(key, range.Rule());
+  } else {
+    NoteNumber(key, value, true);
   }
 }
 
 void Reader::Integer(const char* key, int& value, const Range& range) {
   if (const Value found = Find(key)) {
     if (const std::optional<int> number = ReadInteger(found, key, range)) value = *number;
+    NoteNumber(key, value, false);
   } else if (value == kRequiredInteger) {
     ReportMissing(key, range.Rule());
+  } else {
+    NoteNumber(key, value, true);
   }
 }
 
@@ -83,15 +138,46 @@ void Reader::Integers(const char* key, std::vector<int>& values, const Range& ra
   }
 }
 
-void Reader::Check(bool ok, const char* key, const std::string& rule) {
+void Reader::Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads) {
   if (ok) return;
-  const KeyPath path = Path(key);
-  const Entry* const entry = place_.map ? place_.map->Find(key) : nullptr;
-  NodePtr value = session_.overrides.Take(path.text);
-  if (!value && entry) value = entry->value;
-  const bool is_scalar = value && value->kind == Node::Kind::kScalar;
-  broken_rules_.push_back(
-      {value ? value->source : place_.source, path, rule + (is_scalar ? ", got " + Describe(*value) : "")});
+  const ReadSession::Spot spot = session_.Locate(Path(key).text);
+  std::string text = WithNumbers(rule, reads);
+  const auto number = numbers_.find(key);
+  const bool is_reference = session_.read.count(spot.path.text) > 0;
+  if (spot.value && spot.value->kind == Node::Kind::kScalar && !is_reference) {
+    text += ", got " + Describe(*spot.value);
+  } else if (!spot.value && number != numbers_.end()) {
+    text += ", got " + number->second.text + " (default)";
+  }
+  std::vector<std::string> keys(reads.begin(), reads.end());
+  if (!keys.empty()) keys.push_back(FirstStep(key));
+  broken_rules_.push_back({spot.source, spot.path, text, keys});
+}
+
+std::filesystem::path Reader::FolderOf(const std::string& key) {
+  const ReadSession::Spot spot = session_.Locate(Path(key).text);
+  return spot.value ? spot.source.document->folder : std::filesystem::path();
+}
+
+void Reader::BeginKey(const std::string& key) {
+  if (session_.errors.reports() != errors_before_key_) wrong_.push_back(key_);
+  key_ = key;
+  errors_before_key_ = session_.errors.reports();
+}
+
+void Reader::NoteNumber(const char* key, double value, bool is_default) {
+  numbers_[key] = {ShortestDecimal(value), is_default};
+}
+
+std::string Reader::WithNumbers(std::string rule, const Keys& keys) const {
+  for (const std::string key : keys) {
+    const auto number = numbers_.find(key);
+    const std::size_t at = FindKey(rule, key);
+    if (number == numbers_.end() || at == std::string::npos) continue;
+    const Shown& shown = number->second;
+    rule.insert(at + key.size(), " (" + shown.text + (shown.is_default ? ", default)" : ")"));
+  }
+  return rule;
 }
 
 std::optional<std::size_t> Reader::ReadChoice(const char* key, const std::vector<std::string>& names) {
@@ -135,7 +221,8 @@ std::optional<int> Reader::ReadInteger(const Value& value, const char* key, cons
 }
 
 Reader::Value Reader::Find(const char* key) {
-  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  BeginKey(key);
+  if (!IsIn(known_, key)) known_.emplace_back(key);
   const KeyPath path = Path(key);
   if (const NodePtr given = session_.overrides.Take(path.text)) return {given, given->source, path};
   const Entry* const entry = place_.map ? place_.map->Find(key) : nullptr;
@@ -244,19 +331,26 @@ std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, cons
 }
 
 void Reader::Finish() {
+  BeginKey("");
   for (const Entry& entry : place_.map ? place_.map->entries : std::vector<Entry>()) {
-    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    if (IsIn(known_, entry.key)) continue;
     const std::string hint = session_.errors.full() ? "" : KeyHint(entry.key, known_);
     entry.source.Report(session_.errors, Path(Printable(entry.key)), "is not a known key" + hint);
   }
   for (Override* const given : session_.overrides.Below(place_.path.text)) {
     const std::string step = FirstStep(given->path.substr(place_.path.text.size()));
-    if (std::find(known_.begin(), known_.end(), step) != known_.end()) continue;
+    if (IsIn(known_, step)) continue;
     given->used = true;
     given->value->source.Report(session_.errors, Path(step), "is not a known key" + KeyHint(step, known_));
   }
-  if (session_.errors.reports() != errors_before_) return;
-  for (const BrokenRule& rule : broken_rules_) rule.source.Report(session_.errors, rule.path, rule.text);
+  const bool all_right = session_.errors.reports() == errors_before_;
+  for (const BrokenRule& rule : broken_rules_) {
+    const bool is_void = rule.keys.empty()
+                             ? !all_right
+                             : std::any_of(rule.keys.begin(), rule.keys.end(),
+                                           [this](const auto& key) { return IsIn(wrong_, key); });
+    if (!is_void) rule.source.Report(session_.errors, rule.path, rule.text);
+  }
 }
 
 void Reader::ReportMissing(const char* key, const std::string& rule) {

@@ -76,8 +76,8 @@ void RunSummary::Observe(const TrainRecord& record) {
 
 std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
   const double simulated_s = master.time_s();
-  const double vehicle_steps = static_cast<double>(master.exchange()) * scenario_.StepsPerExchange() *
-                               vehicles_;
+  const double vehicle_steps =
+      static_cast<double>(master.exchange()) * scenario_.StepsPerExchange() * vehicles_;
   char digest[20];
   std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
   std::ostringstream json;
@@ -105,7 +105,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_energy_j_)
        << ",\n    \"final_j\": " << Number(ledger_.Stored())
-       << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j) << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
+       << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j)
+       << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
   const char* separator = "";
   for (const auto& [element, energy] : ledger_.dissipated_j) {
     json << separator << "\n      " << Quoted(element) << ": " << Number(energy);

@@ -2,12 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace train_dynamics {
 namespace {
 
 /// How many parts make up a whole that is known to be a multiple.
 long Parts(double whole, double part) { return std::lround(whole / part); }
+
+std::string Index(std::size_t i) { return "[" + std::to_string(i) + "]"; }
+
+std::string Counted(std::size_t entries) {
+  return std::to_string(entries) + (entries == 1 ? " entry" : " entries");
+}
+
+/// A number for people, to five digits.
+std::string Short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.5g", value);
+  return text;
+}
+
+/// What the number of a vehicle must be.
+std::string VehicleRule(int vehicles) {
+  if (vehicles == 1) return "must be 1 or -1, because the train has 1 vehicle";
+  const std::string n = std::to_string(vehicles);
+  return "must be in [1, " + n + "], or in [-" + n + ", -1] from the rear, because the train has " + n +
+         " vehicles";
+}
+
+void WarnOfGear(const ScenarioParams& scenario, const std::string& key, const ConnectionParams& connection,
+                double lightest_kg, std::vector<std::string>& warnings) {
+  const DraftGearParams& gear = connection.draft_gear;
+  if (connection.kind != ConnectionKind::kDraftGears || gear.friction != DraftGearFriction::kSmooth) return;
+  const std::string speed_key = key + ".draft_gear.smoothing_speed_mps";
+  constexpr double kLongestPerSpeed = 0.25;  // [s^2/m], found with the 2D train
+  const double longest_s = kLongestPerSpeed * gear.smoothing_speed_mps;
+  // A multiple of dt_s may exceed the limit by no more than a rounding error.
+  if (scenario.model == VehicleModel::kTwoD && scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
+    warnings.push_back("exchange_interval_s " + Short(scenario.exchange_interval_s) + " is above " +
+                       Short(longest_s) + ", 0.25 s^2/m times " + speed_key + " " +
+                       Short(gear.smoothing_speed_mps) + ": coupler forces of the 2d train may break down");
+  }
+  constexpr double kLargeForce = 900e3;  // [N]
+  const double lowest_mps =
+      2.0 * kLargeForce * gear.static_friction_coefficient * scenario.dt_s / (gear.TanWedge() * lightest_kg);
+  if (gear.smoothing_speed_mps < lowest_mps) {
+    warnings.push_back(speed_key + " " + Short(gear.smoothing_speed_mps) + " is below " + Short(lowest_mps) +
+                       ", the least for dt_s " + Short(scenario.dt_s) + " at 900 kN and " +
+                       Short(lightest_kg) + " kg: the friction of the draft gears may chatter");
+  }
+}
 
 }  // namespace
 
@@ -57,26 +103,93 @@ bool ScenarioParams::CommandTimesAscend() const {
                         [](const BrakeCommand& a, const BrakeCommand& b) { return a.time_s < b.time_s; });
 }
 
-bool ScenarioParams::ReductionsMeasured() const {
-  if (!brake) return true;
+std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
+  std::vector<BrokenRule> broken;
+  JudgeBrake(broken);
+  const int vehicles = train.VehicleCount();
+  for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
+    if (VehicleIndex(detail_vehicles[i], vehicles) >= 0) continue;
+    broken.push_back({"detail_vehicles" + Index(i), VehicleRule(vehicles), {"train"}});
+  }
+  JudgeDips(broken);
+  return broken;
+}
+
+void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
+  if (!brake || !pressure_table.empty()) return;
   const std::vector<double>& measured = brake->service.reduction_kpa;
-  return std::all_of(commands.begin(), commands.end(), [&measured](const BrakeCommand& c) {
-    return c.kind != BrakeCommandKind::kApply ||
-           (!measured.empty() && c.reduction_kpa >= measured.front() && c.reduction_kpa <= measured.back());
-  });
+  const bool releases = std::any_of(brake->sources.begin(), brake->sources.end(),
+                                    [](const BrakeSourceParams& source) { return source.releases; });
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const BrakeCommand& command = commands[i];
+    if (command.kind == BrakeCommandKind::kApply && !measured.empty() &&
+        !(command.reduction_kpa >= measured.front() && command.reduction_kpa <= measured.back())) {
+      const Range range{measured.front(), measured.back(), false, false};
+      broken.push_back({"commands" + Index(i) + ".reduction_kpa",
+                        range.Rule() + " (brake.service.reduction_kpa)",
+                        {"brake"}});
+    }
+    if (command.kind == BrakeCommandKind::kRelease && !releases) {
+      broken.push_back({"brake",
+                        "must have a source that releases the brakes, as commands" + Index(i) + " demands",
+                        {"commands"}});
+    }
+  }
+  const int vehicles = train.VehicleCount();
+  for (std::size_t i = 0; i < brake->sources.size(); ++i) {
+    const BrakeSourceParams& source = brake->sources[i];
+    if (VehicleIndex(source.vehicle, vehicles) >= 0) continue;
+    const std::string which = source.name.empty() ? "" : " (" + source.name + ")";
+    broken.push_back({"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {"train"}});
+  }
 }
 
-bool ScenarioParams::SourcesInTrain() const {
-  if (!brake) return true;
-  const int n = train.VehicleCount();
-  return std::all_of(brake->sources.begin(), brake->sources.end(),
-                     [n](const BrakeSourceParams& s) { return VehicleIndex(s.vehicle, n) >= 0; });
+void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
+  if (model != VehicleModel::kTwoD || train.consist.empty()) return;
+  const double front_m = start_position_m + 0.5 * train.consist.front().vehicle.length_m;
+  double rear_m = front_m;
+  for (const ConsistGroupParams& group : train.consist) rear_m -= group.count * group.vehicle.length_m;
+  for (std::size_t i = 0; i < track.dips.size(); ++i) {
+    const DipParams& dip = track.dips[i];
+    if (dip.depth_m == 0.0 || !(dip.from_m < front_m && dip.from_m + dip.length_m > rear_m)) continue;
+    broken.push_back({"track.dips" + Index(i),
+                      "must not lie under the train at its start, which stands on [" + Short(rear_m) + ", " +
+                          Short(front_m) + "] m; the dip is on [" + Short(dip.from_m) + ", " +
+                          Short(dip.from_m + dip.length_m) + "] m",
+                      {"train", "start_position_m", "model"}});
+  }
 }
 
-bool ScenarioParams::DetailInTrain() const {
-  const int n = train.VehicleCount();
-  return std::all_of(detail_vehicles.begin(), detail_vehicles.end(),
-                     [n](int v) { return VehicleIndex(v, n) >= 0; });
+std::vector<std::string> Warnings(const ScenarioParams& scenario) {
+  std::vector<std::string> warnings;
+  const TrainParams& train = scenario.train;
+  double lightest_kg = std::numeric_limits<double>::infinity();
+  long units = 0;
+  for (const ConsistGroupParams& group : train.consist) {
+    lightest_kg = std::min(lightest_kg, group.vehicle.TotalMass());
+    units += group.count / group.vehicles_per_unit;
+  }
+  if (units > 1) WarnOfGear(scenario, "train.connection", train.connection, lightest_kg, warnings);
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const ConsistGroupParams& group = train.consist[i];
+    if (group.vehicles_per_unit == 1) continue;
+    WarnOfGear(scenario, "train.consist" + Index(i) + ".unit_connection", group.unit_connection, lightest_kg,
+               warnings);
+  }
+  if (scenario.model != VehicleModel::kTwoD) {
+    const std::string model = std::string("the ") + ModelName(scenario.model) + " model leaves out ";
+    const TrackParams& track = scenario.track;
+    if (!track.dips.empty()) warnings.push_back(model + "track.dips (" + Counted(track.dips.size()) + ")");
+    if (!track.friction_patches.empty())
+      warnings.push_back(model + "track.friction_patches (" + Counted(track.friction_patches.size()) + ")");
+  }
+  if (!scenario.pressure_table.empty()) {
+    const std::string unused = " not used: the pressures come from pressure_table";
+    if (scenario.brake) warnings.push_back("brake is" + unused);
+    if (!scenario.commands.empty())
+      warnings.push_back("commands (" + Counted(scenario.commands.size()) + ") are" + unused);
+  }
+  return warnings;
 }
 
 }  // namespace train_dynamics

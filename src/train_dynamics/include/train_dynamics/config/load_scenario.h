@@ -13,19 +13,24 @@ struct LoadedScenario {
   ScenarioParams params;
   Consist consist;
   PressureSource pressures;
+  std::vector<std::string> warnings;  ///< see Warnings()
 };
 
 /// Reads a scenario with all of its parts, and its pressure table if it names one.
 ///
-/// A relative path of the pressure table counts from the scenario file's folder. The table is CSV with the
-/// columns time_s, vehicle_1_pa, vehicle_2_pa, ... , one for each vehicle of the train. Parts are looked for
-/// around the file, then in the folders of the environment variable TRAIN_BRAKE_CONFIG.
+/// Beyond the rules of ScenarioParams, a 2D scenario must have vehicles of which a Wagon can be built and
+/// that rest on their springs, and a dt_s within the largest stable step of each (AnalyseModes).
+///
+/// A relative path of the pressure table counts from the folder of the file that names it, or from the
+/// working directory where an override does. The table is CSV with the columns time_s, vehicle_1_pa,
+/// vehicle_2_pa, ... , one for each vehicle of the train. Parts are looked for around the file, then in the
+/// folders of the environment variable TRAIN_BRAKE_CONFIG.
 ///
 /// @param overrides  "path=value", as given to --set
 /// @throws Error with everything that is wrong, as file:line: key ...
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides);
 
-/// Reads a vehicle file likewise.
+/// Reads a vehicle file likewise; a Wagon can be built of it.
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides);
 
 }  // namespace train_dynamics::config

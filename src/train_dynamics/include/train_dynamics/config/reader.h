@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,22 @@ struct ReadSession {
   PartLibrary library;
   Overrides overrides;
   std::size_t values_left = kMaxValues;
+
+  /// A map that a struct was read from.
+  struct ReadMap {
+    NodePtr map;  ///< null: an empty map
+    Source source;
+    std::size_t part = 0;  ///< see KeyPath
+  };
+  std::map<std::string, ReadMap> read = {};  ///< by path
+
+  /// Where a value of the configuration stands.
+  struct Spot {
+    Source source;
+    NodePtr value;  ///< null: not given
+    KeyPath path;
+  };
+  Spot Locate(const std::string& path);
 };
 
 /// The visitor that fills a struct from one map of a document.
@@ -53,7 +70,11 @@ class Reader {
   void Text(const char* key, std::string& value);
   void Numbers(const char* key, std::vector<double>& values, const Range& range);
   void Integers(const char* key, std::vector<int>& values, const Range& range);
-  void Check(bool ok, const char* key, const std::string& rule);
+  void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
+
+  /// The folder from which a file that was given under this key counts: that of the file in which it is
+  /// written, or the working directory for an override. Empty if the key was not given.
+  std::filesystem::path FolderOf(const std::string& key);
 
   template <class Enum>
   void Choice(const char* key, Enum& value, Choices<Enum> choices) {
@@ -97,8 +118,9 @@ class Reader {
   }
 
  private:
-  template <class Struct>
-  friend Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors);
+  template <class Struct, class Rules>
+  friend Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors,
+                     const Rules& rules);
   template <class Struct>
   friend Struct LoadText(const std::string& text, const std::string& label, ErrorList& errors);
 
@@ -139,6 +161,9 @@ class Reader {
   std::optional<std::size_t> ReadChoice(const char* key, const std::vector<std::string>& names);
   std::optional<double> ReadNumber(const Value& value, const char* key, const Range& range);
   std::optional<int> ReadInteger(const Value& value, const char* key, const Range& range);
+  void BeginKey(const std::string& key);
+  void NoteNumber(const char* key, double value, bool is_default);
+  std::string WithNumbers(std::string rule, const Keys& keys) const;
   void Finish();
   void ReportMissing(const char* key, const std::string& rule);
   void ReportMissingPart(const char* key, const std::string& kind);
@@ -184,19 +209,34 @@ class Reader {
   const Place place_;
   std::vector<std::string> known_;  ///< the keys that were asked for
   std::size_t errors_before_;       ///< the number of reports when this struct's visit began
+  std::string key_;                 ///< that is being read
+  std::size_t errors_before_key_;   ///< the number of reports when that began
+  std::vector<std::string> wrong_;  ///< the keys under which something was reported
+
+  /// What a rule may have to show of a number.
+  struct Shown {
+    std::string text;
+    bool is_default;
+  };
+  std::map<std::string, Shown> numbers_;  ///< by key
+
   struct BrokenRule {
     Source source;
     KeyPath path;
     std::string text;
+    std::vector<std::string> keys;  ///< of this struct that it reads; empty: perhaps all of them
   };
-  std::vector<BrokenRule> broken_rules_;  ///< Checks that failed; void if anything else is wrong
+  std::vector<BrokenRule> broken_rules_;  ///< Checks that failed; void if what they read is wrong
 };
 
 /// Reads a struct from a YAML file and the files that it refers to, with overrides on top.
 ///
 /// All that is wrong is added to `errors`; the result is only meant to be used when there is nothing.
-template <class Struct>
-Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors) {
+///
+/// @param rules  called as rules(Struct&, Reader&) when all else is right, for what takes a calculation to
+///               judge: it calls Check of the reader, with paths from the root of the configuration
+template <class Struct, class Rules>
+Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors, const Rules& rules) {
   Struct value;
   ReadSession session{
       errors, PartLibrary(options.search_roots, errors),
@@ -207,7 +247,16 @@ Struct Load(const std::string& file, const LoadOptions& options, ErrorList& erro
   value.Visit(reader);
   reader.Finish();
   Reader::ReportUnused(session);
+  if (errors.empty()) {
+    rules(value, reader);
+    reader.Finish();
+  }
   return value;
+}
+
+template <class Struct>
+Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors) {
+  return Load<Struct>(file, options, errors, [](Struct&, Reader&) {});
 }
 
 /// Reads a struct from YAML text that stands alone, such as Write gives: parts are maps, not names or files.

@@ -21,7 +21,7 @@ class Writer {
   void Text(const char* key, const std::string& value);
   void Numbers(const char* key, const std::vector<double>& values, const Range&);
   void Integers(const char* key, const std::vector<int>& values, const Range&);
-  void Check(bool, const char*, const std::string&) {}
+  void Check(bool, const std::string&, const std::string&, const Keys& = {}) {}
 
   template <class Enum>
   void Choice(const char* key, Enum value, Choices<Enum> choices) {

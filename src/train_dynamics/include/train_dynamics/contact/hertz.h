@@ -17,8 +17,12 @@ struct HertzParams {
     v.Number("poisson_ratio", poisson_ratio, Range{0.0, 0.5, false, false});
     v.Number("wheel_lateral_radius_m", wheel_lateral_radius_m, kFinite);
     v.Number("rail_lateral_radius_m", rail_lateral_radius_m, kPositive);
-    v.Check(1.0 / wheel_lateral_radius_m + 1.0 / rail_lateral_radius_m > 0.0, "wheel_lateral_radius_m",
-            "must make a point contact: a concave wheel needs a radius larger than the rail's");
+    v.Check(wheel_lateral_radius_m != 0.0, "wheel_lateral_radius_m", "must not be 0",
+            {"wheel_lateral_radius_m"});
+    v.Check(wheel_lateral_radius_m == 0.0 || 1.0 / wheel_lateral_radius_m + 1.0 / rail_lateral_radius_m > 0.0,
+            "wheel_lateral_radius_m",
+            "must make a point contact: a concave wheel needs a radius larger than rail_lateral_radius_m",
+            {"rail_lateral_radius_m"});
   }
 };
 

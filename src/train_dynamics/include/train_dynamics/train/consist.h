@@ -21,7 +21,8 @@ struct ConsistGroupParams {
     v.Integer("count", count, Range{1, 100000, false, false});
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
-    v.Check(count % vehicles_per_unit == 0, "count", "must be a multiple of vehicles_per_unit");
+    v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
+            "must be a multiple of vehicles_per_unit", {"vehicles_per_unit"});
   }
 };
 

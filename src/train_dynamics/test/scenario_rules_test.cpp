@@ -1,0 +1,301 @@
+// What a scenario is refused for before it runs, and what it is warned of; the texts included.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/config/error_list.h"
+#include "train_dynamics/config/load_scenario.h"
+
+namespace train_dynamics::config {
+namespace {
+
+namespace fs = std::filesystem;
+using Settings = std::vector<std::string>;
+
+class ScenarioRules : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "rules_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    root_ = fs::canonical(pattern);
+    fs::copy(TRAIN_BRAKE_CONFIG_DIR, root_, fs::copy_options::recursive);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  std::string Scenario(const std::string& name) const {
+    return (root_ / "scenarios" / name).string() + ".yaml";
+  }
+
+  std::string Put(const std::string& name, const std::string& text) const {
+    fs::create_directories((root_ / name).parent_path());
+    std::ofstream(root_ / name) << text;
+    return (root_ / name).string();
+  }
+
+  /// The complaints about a scenario, without the folder; empty if it is right.
+  std::string ErrorsOf(const std::string& file, const Settings& settings = {}) const {
+    try {
+      LoadScenario(file, settings);
+    } catch (const Error& error) {
+      return WithoutFolder(error.what());
+    }
+    return "";
+  }
+  std::string WithoutFolder(std::string text) const {
+    const std::string prefix = root_.string() + "/";
+    for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;)
+      text.erase(at, prefix.size());
+    return text;
+  }
+  /// Replaces a text that the file has once.
+  void Edit(const std::string& name, const std::string& before, const std::string& after) const {
+    std::ifstream in(root_ / name);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    ASSERT_NE(text.find(before), std::string::npos) << before;
+    Put(name, text.replace(text.find(before), before.size(), after));
+  }
+
+  fs::path root_;
+};
+
+TEST_F(ScenarioRules, TheProjectsOwnScenariosKeepAllOfThem) {
+  for (const auto& file : fs::directory_iterator(root_ / "scenarios")) {
+    EXPECT_EQ(ErrorsOf(file.path().string()), "") << file.path();
+    EXPECT_TRUE(LoadScenario(file.path().string(), {}).warnings.empty()) << file.path();
+  }
+}
+
+// ---- vehicles of which no wagon can be built
+
+TEST_F(ScenarioRules, ContactsBeyondKalkersTableNameTheirLine) {
+  Edit("vehicles/ore_wagon.yaml", "wheel_lateral_radius_m: -0.1952", "wheel_lateral_radius_m: -0.0801");
+  const std::string complaint =
+      "wheel_rail.hertz gives no contact with wheelset.wheel_radius_m 0.485: Kalker's table holds a/b in "
+      "[0.1, 10], got ";
+  // The curvatures nearly cancel, so that the ellipse is far longer across the rail than along it.
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip")).find("vehicles/ore_wagon.yaml:33: train.consist[0].vehicle." + complaint), 0u)
+      << ErrorsOf(Scenario("dip"));
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {"model=ltd"}), "") << "the LTD models have no contact";
+  try {
+    LoadVehicle((root_ / "vehicles/ore_wagon.yaml").string(), {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(WithoutFolder(error.what()).find("vehicles/ore_wagon.yaml:33: " + complaint), 0u)
+        << error.what();
+  }
+}
+
+TEST_F(ScenarioRules, ContactsFromOverrides) {
+  const std::string hertz = "train.consist[0].vehicle.wheel_rail.hertz.";
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {hertz + "wheel_lateral_radius_m=0"}),
+            "--set " + hertz + "wheel_lateral_radius_m=0: " + hertz +
+                "wheel_lateral_radius_m must not be 0, got 0");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip"), {hertz + "wheel_lateral_radius_m=-0.07"}),
+      "--set " + hertz + "wheel_lateral_radius_m=-0.07: " + hertz +
+          "wheel_lateral_radius_m must make a point contact: a concave wheel needs a radius larger than "
+          "rail_lateral_radius_m (0.08), got -0.07");
+  for (const char* setting :
+       {"wheel_rail.hertz.rail_lateral_radius_m=0.0001", "wheelset.wheel_radius_m=0.001"}) {
+    const std::string errors =
+        ErrorsOf(Scenario("dip"), {std::string("train.consist[0].vehicle.") + setting});
+    EXPECT_NE(errors.find(
+                  "train.consist[0].vehicle.wheel_rail.hertz gives no contact with wheelset.wheel_radius_m"),
+              std::string::npos)
+        << errors;
+  }
+}
+
+TEST_F(ScenarioRules, SpringsThatCannotCarryTheWagon) {
+  Edit("vehicles/ore_wagon.yaml", "mass_kg: 147599.8", "mass_kg: 1e40");
+  EXPECT_EQ(ErrorsOf(Scenario("dip")),
+            "vehicles/ore_wagon.yaml:44: train.consist[0].vehicle.spring_nest cannot be used: vehicle "
+            "ore_wagon has "
+            "no static equilibrium: its springs cannot carry its weight");
+}
+
+// ---- the step
+
+TEST_F(ScenarioRules, StepsBeyondTheLargestStableOne) {
+  const Settings two_ms = {"dt_s=0.002", "exchange_interval_s=0.002", "record_interval_s=0.002"};
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), two_ms),
+            "--set dt_s=0.002: dt_s must be at most 0.00174, the largest stable step of vehicle ore_wagon "
+            "(train_sim modes), got 0.002");
+  Settings ltd = two_ms;
+  ltd.push_back("model=ltd");
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), ltd), "");
+  // Stiffer by 4 and therefore faster by 2, of one type among others: the default step is refused too.
+  Put("vehicles/stiff.yaml",
+      "base: ore_wagon\nname: stiff\nadaptor_pad: {stiffness_n_per_m: 1.2e8}\nwheel_rail: {normal: "
+      "{stiffness_n_per_m: 2.4e9}}\nbolster_guide: {stiffness_n_per_m: 1.6e9}\ncentre_plate: "
+      "{stiffness_n_per_m: 1.6e9}\n");
+  const std::string file =
+      Put("scenarios/stiff.yaml",
+          "base: dip\ntrain:\n  base: single_wagon\n  consist:\n  - {vehicle: ore_wagon}\n  - "
+          "{vehicle: stiff}\ntrack: level\n");
+  const std::string errors = ErrorsOf(file);
+  EXPECT_NE(errors.find("dt_s must be at most 0.000"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("of vehicle stiff (train_sim modes), got 0.001 (default)"), std::string::npos)
+      << errors;
+}
+
+// ---- rules between keys
+
+TEST_F(ScenarioRules, IntervalsShowBothNumbers) {
+  EXPECT_EQ(
+      ErrorsOf(Scenario("emergency"), {"exchange_interval_s=0.0015"}),
+      "--set exchange_interval_s=0.0015: exchange_interval_s must be a multiple of dt_s (0.001), got 0.0015\n"
+      "scenarios/emergency.yaml:15: record_interval_s must be a multiple of exchange_interval_s (0.0015), "
+      "got "
+      "0.01");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip"), {"dt_s=0.0007"}),
+      "scenarios/dip.yaml:1: exchange_interval_s must be a multiple of dt_s (0.0007), got 0.001 (default)");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip"), {"record_interval_s=0.0105"}),
+      "--set record_interval_s=0.0105: record_interval_s must be a multiple of exchange_interval_s (0.001, "
+      "default), got 0.0105\nscenarios/dip.yaml:1: ledger_interval_s must be a multiple of record_interval_s "
+      "(0.0105), got 1 (default)\nscenarios/dip.yaml:9: duration_s must be a multiple of record_interval_s "
+      "(0.0105), got 6");
+}
+
+TEST_F(ScenarioRules, CommandsAndSourcesNameTheirIndex) {
+  const std::string file =
+      Put("scenarios/a.yaml",
+          "base: emergency\ncommands:\n  - {time_s: 1, kind: emergency}\n"
+          "  - {time_s: 2, kind: apply, reduction_kpa: 20}\ndetail_vehicles: [1, 243]\n");
+  EXPECT_EQ(
+      ErrorsOf(file),
+      "scenarios/a.yaml:4: commands[1].reduction_kpa must be in [50, 170] (brake.service.reduction_kpa), got "
+      "20\n"
+      "scenarios/a.yaml:5: detail_vehicles[1] must be in [1, 242], or in [-242, -1] from the rear, because "
+      "the "
+      "train has 242 vehicles, got 243");
+  EXPECT_EQ(ErrorsOf(Scenario("emergency"), {"brake.sources[1].vehicle=300"}),
+            "--set brake.sources[1].vehicle=300: brake.sources[1].vehicle must be in [1, 242], or in [-242, "
+            "-1] from "
+            "the rear, because the train has 242 vehicles (mid-train locomotive), got 300");
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {"detail_vehicles[0]=2"}),
+            "--set detail_vehicles[0]=2: detail_vehicles[0] must be 1 or -1, because the train has 1 "
+            "vehicle, got 2");
+}
+
+TEST_F(ScenarioRules, BrakesThatDoNotSuitTheTrain) {
+  Put("brakes/vent_only.yaml", "base: calibrated\nsources: [{vehicle: 1, releases: false}]\n");
+  const std::string file = Put("scenarios/a.yaml", "base: minimum\nbrake: vent_only\n");
+  EXPECT_EQ(ErrorsOf(file),
+            "scenarios/a.yaml:2: brake must have a source that releases the brakes, as commands[1] demands");
+  // With 0.1 1/s the rate, which falls by 0.1683 1/s over 2530.5 m, is zero 1504 m from the only source:
+  // within the train.
+  Put("brakes/weak.yaml", "base: vent_only\nemergency: {rise_rate_per_s: 0.1}\n");
+  Put("scenarios/b.yaml", "base: emergency\nbrake: weak\n");
+  const std::string errors = ErrorsOf(Scenario("b"));
+  EXPECT_EQ(
+      errors.find("scenarios/b.yaml:2: brake does not suit the train: the emergency rise rate falls to zero"),
+      0u)
+      << errors;
+  EXPECT_NE(errors.find("rise_rate_fall_per_s is too large for this train"), std::string::npos) << errors;
+}
+
+TEST_F(ScenarioRules, DipsUnderTheStandingTrain) {
+  const std::string file = Put("scenarios/a.yaml",
+                               "base: emergency\ntrack:\n  base: level\n  dips:\n"
+                               "  - {from_m: 10, depth_m: 0.05, length_m: 10}\n"
+                               "  - {from_m: -20, depth_m: 0.05, length_m: 10}\n");
+  EXPECT_EQ(ErrorsOf(file),
+            "scenarios/a.yaml:6: track.dips[1] must not lie under the train at its start, which stands on "
+            "[-2535.8, "
+            "5.25] m; the dip is on [-20, -10] m");
+  EXPECT_EQ(ErrorsOf(file, {"model=ltd"}), "");
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {"start_position_m=34"}),
+            "");  // the front at 39.25 m, the dip from 40 m
+  EXPECT_NE(ErrorsOf(Scenario("dip"), {"start_position_m=35"}), "");
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {"start_position_m=56"}), "");  // the rear at 50.75 m, the dip to 50 m
+}
+
+TEST_F(ScenarioRules, UnitsOfNoVehicles) {
+  const std::string unit = "train.consist[0].vehicles_per_unit";
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {unit + "=0"}),
+            "--set " + unit + "=0: " + unit + " must be in [1, 100000], got 0");
+}
+
+TEST_F(ScenarioRules, AreJudgedBesideErrorsInKeysThatTheyDoNotRead) {
+  const std::string file = Put("scenarios/a.yaml", "base: dip\ninitial_speed_kmh: fast\ndt_s: 0.0007\n");
+  EXPECT_EQ(
+      ErrorsOf(file),
+      "scenarios/a.yaml:1: exchange_interval_s must be a multiple of dt_s (0.0007), got 0.001 (default)\n"
+      "scenarios/a.yaml:2: initial_speed_kmh must be a number, got 'fast'");
+}
+
+// ---- pressure tables
+
+TEST_F(ScenarioRules, PressureTablesCountFromWhereTheyAreNamed) {
+  Put("tables/t.csv", "time_s,vehicle_1_pa\n0,0\n1,1000\n");
+  Put("shared/base.yaml", "base: ../scenarios/dip.yaml\npressure_table: ../tables/t.csv\n");
+  const std::string file = Put("elsewhere/deep/a.yaml", "base: ../../shared/base.yaml\n");
+  const LoadedScenario loaded = LoadScenario(file, {});
+  EXPECT_EQ(loaded.params.pressure_table, (root_ / "tables/t.csv").string());
+  std::vector<double> pressure_pa;
+  loaded.pressures(0.5, pressure_pa);
+  EXPECT_NEAR(pressure_pa.at(0), 500.0, 1e-9);  // midway; the rounding of one interpolation
+
+  const fs::path here = fs::current_path();
+  fs::current_path(root_ / "tables");
+  const LoadedScenario overridden = LoadScenario(Scenario("dip"), {"pressure_table=t.csv"});
+  fs::current_path(here);
+  EXPECT_EQ(overridden.params.pressure_table, (root_ / "tables/t.csv").string());
+}
+
+// ---- warnings
+
+TEST_F(ScenarioRules, WarnsOfExchangeIntervalsThatTheDraftGearsDoNotStand) {
+  // 0.25 s^2/m times 0.0384 m/s = 9.6 ms.
+  const Settings coarse = {"exchange_interval_s=0.01"};
+  EXPECT_EQ(
+      LoadScenario(Scenario("emergency"), coarse).warnings,
+      Settings{"exchange_interval_s 0.01 is above 0.0096, 0.25 s^2/m times "
+               "train.connection.draft_gear.smoothing_speed_mps 0.0384: coupler forces of the 2d train may "
+               "break down"});
+  EXPECT_TRUE(LoadScenario(Scenario("emergency"), {"exchange_interval_s=0.005"}).warnings.empty());
+  EXPECT_TRUE(
+      LoadScenario(Scenario("dip"), {"exchange_interval_s=0.01", "record_interval_s=0.01"}).warnings.empty())
+      << "one wagon has no connection";
+  EXPECT_TRUE(
+      LoadScenario(Scenario("emergency"), {"model=ltd", "exchange_interval_s=0.01"}).warnings.empty());
+  EXPECT_TRUE(LoadScenario(Scenario("emergency"),
+                           {"train.connection.draft_gear.friction=stick_spring", "exchange_interval_s=0.01"})
+                  .warnings.empty());
+}
+
+TEST_F(ScenarioRules, WarnsOfFrictionTooSteepForTheStep) {
+  // 2 * 900 kN * 0.33 * 1 ms / (tan(22 deg) * 160113.8 kg) = 9.182 mm/s.
+  EXPECT_EQ(
+      LoadScenario(Scenario("emergency"), {"train.connection.draft_gear.smoothing_speed_mps=0.009"}).warnings,
+      Settings{"train.connection.draft_gear.smoothing_speed_mps 0.009 is below 0.0091822, the least for dt_s "
+               "0.001 at 900 kN and 1.6011e+05 kg: the friction of the draft gears may chatter"});
+}
+
+TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
+  Put("t.csv", "time_s,vehicle_1_pa\n0,0\n1,1000\n");
+  const std::string table = "pressure_table=" + (root_ / "t.csv").string();
+  EXPECT_EQ(LoadScenario(Scenario("dip"), {"model=ltd"}).warnings,
+            Settings{"the ltd model leaves out track.dips (1 entry)"});
+  EXPECT_EQ(LoadScenario(Scenario("single_wagon_stop"), {table}).warnings,
+            (Settings{"brake is not used: the pressures come from pressure_table",
+                      "commands (1 entry) are not used: the pressures come from pressure_table"}));
+  const std::string file = Put("scenarios/a.yaml",
+                               "base: single_wagon_stop\nmodel: ltd-no-inertia\ntrack:\n  base: level\n"
+                               "  friction_patches:\n  - {from_m: 1, to_m: 2, friction_coefficient: 0.1}\n"
+                               "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(LoadScenario(file, {}).warnings,
+            Settings{"the ltd-no-inertia model leaves out track.friction_patches (2 entries)"});
+}
+
+}  // namespace
+}  // namespace train_dynamics::config

@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""Checks every launch file as roslaunch_add_file_check does.
+
+(That CMake function takes the folder that a file really lies in, and launch/ lies outside of the package train_brake,
+which links to it.)
+"""
+import pathlib
+import subprocess
+import unittest
+
+import roslaunch.rlutil
+import rosunit
+
+LAUNCH = pathlib.Path(__file__).resolve().parent.parent / "launch"
+
+
+class LaunchFiles(unittest.TestCase):
+    def test_check_every_file(self):
+        files = [f for f in sorted(LAUNCH.glob("*.launch")) if f.stem != "wagons"]  # that one has required arguments
+        self.assertGreater(len(files), 5)
+        for file in files:
+            with self.subTest(file.name):
+                self.assertIsNone(roslaunch.rlutil.check_roslaunch(str(file), ignore_unset_args=True))
+
+    def test_every_scenario_has_a_launch_file_that_names_it(self):
+        scenarios = {file.stem for file in (LAUNCH.parent / "config" / "scenarios").glob("*.yaml")}
+        self.assertLessEqual(scenarios, {file.stem for file in LAUNCH.glob("*.launch")})
+        for scenario in scenarios:
+            text = (LAUNCH / (scenario + ".launch")).read_text()
+            self.assertIn("config/scenarios/%s.yaml" % scenario, text)
+
+    def test_by_package_name_and_by_path(self):
+        by_name = subprocess.run(["roslaunch", "--nodes", "train_brake", "emergency.launch", "nodes:=4"],
+                                 stdout=subprocess.PIPE, check=True, text=True).stdout
+        by_path = subprocess.run(["roslaunch", "--nodes", str(LAUNCH / "emergency.launch"), "nodes:=4"],
+                                 stdout=subprocess.PIPE, check=True, text=True).stdout
+        self.assertEqual(by_name, by_path)
+        self.assertEqual({"/train/master", "/train/wagon_001", "/train/wagon_061", "/train/wagon_122", "/train/wagon_182"},
+                         set(by_name.split()))
+
+    def test_machines_get_contiguous_blocks_of_nodes(self):
+        config = roslaunch.config.load_config_default(
+            [(str(LAUNCH / "emergency.launch"), ["nodes:=7", "machines:=10.1.0.1 10.1.0.2  10.1.0.3", "env_loader:=/env.sh"])],
+            None, verbose=False)
+        addresses = [config.machines[n.machine_name].address for n in sorted(config.nodes, key=lambda n: n.name)
+                     if n.type == "wagon_node"]
+        self.assertEqual(["10.1.0.1"] * 3 + ["10.1.0.2"] * 2 + ["10.1.0.3"] * 2, addresses)
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("train_brake", "launch_files", LaunchFiles)
