@@ -195,7 +195,8 @@ class DistributedTrain(unittest.TestCase):
         bag = pathlib.Path(self.folder.name) / "beside.bag"
         recorder = subprocess.Popen(["rosbag", "record", "-q", "-O", str(bag), "/train/state", "__name:=beside"],
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        launch = self.launch("nodes:=2", "start_paused:=true", "real_time_factor:=1")
+        # Three seconds: a recorder starts with the first message after the first /clock, and takes a moment.
+        launch = self.launch("nodes:=2", "start_paused:=true", "real_time_factor:=1", "set:=duration_s=3")
         rospy.wait_for_service("/train/master/resume", 60)
         graph = rosgraph.Master("/distributed_train")
         self.assertTrue(wait_until(

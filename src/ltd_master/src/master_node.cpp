@@ -172,6 +172,7 @@ int MasterNode::Run() {
     fault = std::string("the results could not be written: ") + e.what();
   }
   PublishDiagnostics(master, exit_code == kSuccess ? "complete" : "ended early");
+  ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
   fmt::print("{}", json);
   std::fflush(stdout);
   if (exit_code == kInterrupted) {

@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "train_dynamics/config/error_list.h"
 #include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/validate.h"
 
 namespace train_dynamics::config {
 namespace {
@@ -181,6 +183,10 @@ TEST_F(ScenarioRules, CommandsAndSourcesNameTheirIndex) {
             "--set brake.sources[1].vehicle=300: brake.sources[1].vehicle must be in [1, 242], or in [-242, "
             "-1] from "
             "the rear, because the train has 242 vehicles (mid-train locomotive), got 300");
+  EXPECT_EQ(ErrorsOf(Scenario("minimum"), {"commands[1].time_s=1.5"}),
+            "--set commands[1].time_s=1.5: commands[1].time_s must be at least that of the command before, 2 "
+            "s, got "
+            "1.5");
   EXPECT_EQ(ErrorsOf(Scenario("dip"), {"detail_vehicles[0]=2"}),
             "--set detail_vehicles[0]=2: detail_vehicles[0] must be 1 or -1, because the train has 1 "
             "vehicle, got 2");
@@ -223,6 +229,9 @@ TEST_F(ScenarioRules, UnitsOfNoVehicles) {
   const std::string unit = "train.consist[0].vehicles_per_unit";
   EXPECT_EQ(ErrorsOf(Scenario("dip"), {unit + "=0"}),
             "--set " + unit + "=0: " + unit + " must be in [1, 100000], got 0");
+  TrainParams train = LoadScenario(Scenario("dip"), {}).params.train;
+  train.consist[0].vehicles_per_unit = 0;
+  EXPECT_THROW(Validate(train), std::invalid_argument);
 }
 
 TEST_F(ScenarioRules, AreJudgedBesideErrorsInKeysThatTheyDoNotRead) {

@@ -116,19 +116,13 @@ TEST(Faults, NameVehicleBodyQuantityAndTime) {
 }
 
 TEST(Faults, AnAbsurdStateEndsTheRun) {
-  // A wall of one metre, and a time step far beyond the explicit limit of about 2 ms.
-  const std::vector<std::vector<std::string>> cases = {
-      {"track.dips[0].depth_m=-1", "track.dips[0].length_m=2"},
-      {"dt_s=0.005", "exchange_interval_s=0.005", "record_interval_s=0.005", "duration_s=5"}};
-  for (const auto& overrides : cases) {
-    try {
-      Simulate("dip", overrides);
-      ADD_FAILURE() << overrides[0] << " ran through";
-    } catch (const SimulationFault& fault) {
-      const std::string what = fault.what();
-      EXPECT_EQ(what.find("vehicle 1: "), 0u) << what;
-      EXPECT_NE(what.find(" at t = "), std::string::npos) << what;
-    }
+  try {
+    Simulate("dip", {"track.dips[0].depth_m=-1", "track.dips[0].length_m=2"});  // a wall of one metre
+    ADD_FAILURE() << "the run went through";
+  } catch (const SimulationFault& fault) {
+    const std::string what = fault.what();
+    EXPECT_EQ(what.find("vehicle 1: "), 0u) << what;
+    EXPECT_NE(what.find(" at t = "), std::string::npos) << what;
   }
 }
 

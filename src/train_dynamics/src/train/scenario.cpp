@@ -98,13 +98,9 @@ bool ScenarioParams::Multiple(double whole, double part) {
          std::abs(ratio - std::round(ratio)) < 1e-6 * std::max(1.0, 1e-3 * ratio);
 }
 
-bool ScenarioParams::CommandTimesAscend() const {
-  return std::is_sorted(commands.begin(), commands.end(),
-                        [](const BrakeCommand& a, const BrakeCommand& b) { return a.time_s < b.time_s; });
-}
-
 std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
+  JudgeTimes(broken);
   JudgeBrake(broken);
   const int vehicles = train.VehicleCount();
   for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
@@ -113,6 +109,16 @@ std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
   }
   JudgeDips(broken);
   return broken;
+}
+
+void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {
+  for (std::size_t i = 1; i < commands.size(); ++i) {
+    if (commands[i].time_s >= commands[i - 1].time_s) continue;
+    broken.push_back(
+        {"commands" + Index(i) + ".time_s",
+         "must be at least that of the command before, " + ShortestDecimal(commands[i - 1].time_s) + " s",
+         {"commands"}});
+  }
 }
 
 void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {

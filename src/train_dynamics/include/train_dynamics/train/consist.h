@@ -38,7 +38,7 @@ struct TrainParams {
     v.Part("connection", connection, "couplers");
     v.List("consist", consist);
     v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
-    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all");
+    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all", {"consist"});
   }
 
   int VehicleCount() const;

@@ -56,7 +56,6 @@ struct ScenarioParams {
     v.Part("brake", brake, "brakes");
     v.List("commands", commands);
     v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
-    v.Check(CommandTimesAscend(), "commands", "must ascend in time_s", {"commands"});
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Number("start_position_m", start_position_m, kFinite);
     v.Choice("initial_slack", initial_slack,
@@ -100,8 +99,8 @@ struct ScenarioParams {
   };
 
   static bool Multiple(double whole, double part);
-  bool CommandTimesAscend() const;
   std::vector<BrokenRule> BrokenRules() const;
+  void JudgeTimes(std::vector<BrokenRule>& broken) const;
   void JudgeBrake(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;
 };
@@ -109,14 +108,15 @@ struct ScenarioParams {
 /// What is allowed but most likely not meant, or beyond what was shown to work; one sentence each, with
 /// numbers.
 ///
-/// 2D model, connections with smooth draft gears of smoothing speed v_e, H the exchange interval:
+/// Connections with smooth draft gears of smoothing speed v_e, H the exchange interval:
 ///
-///   H > 0.25 s^2/m v_e                          the coupler forces of the 2D train break down
-///   v_e < 2 F_s mu_s dt / (tan(phi) m)          too steep for the step at F_s = 900 kN; m the lightest
-///   vehicle
+///   H > 0.25 s^2/m v_e                    the coupler forces of the 2D train break down
+///   v_e < 2 F_s mu_s dt / (tan(phi) m)    too steep for the step; F_s = 900 kN, m of the lightest vehicle
 ///
 /// the latter in every model. Besides: parts of the scenario that its model, or its pressure table, leaves
 /// unused.
+///
+/// @param scenario  one that keeps its rules
 std::vector<std::string> Warnings(const ScenarioParams& scenario);
 
 /// Index from 0 of a vehicle that is numbered from 1, or from -1 for the last; -1 if the train has no such

@@ -106,7 +106,8 @@ struct VehicleParams {
     v.Group("brake_rigging", brake_rigging);
     v.Group("propulsion_resistance", propulsion_resistance);
     v.Check(2.0 * (half_bogie_spacing_m + half_wheelset_spacing_m) < length_m, "length_m",
-            "must exceed the distance between the outer wheelsets");
+            "must exceed the distance between the outer wheelsets",
+            {"half_bogie_spacing_m", "half_wheelset_spacing_m"});
   }
 
   /// Mass of the whole vehicle [kg].
