@@ -3,7 +3,7 @@
 namespace train_dynamics {
 namespace {
 
-constexpr int kSpins = 4000;  // some microseconds; an exchange of a full train takes tens
+constexpr int kSpins = 100000;  // about 0.1 ms: longer than what the caller does between two rounds
 
 template <class Condition>
 bool Spin(const Condition& done) {

@@ -11,7 +11,7 @@ namespace train_dynamics {
 
 /// A fixed team of threads that runs the same task side by side, thousands of times a second.
 ///
-/// Waiting spins for a few microseconds, then sleeps, so that neither a busy train nor an idle one wastes a
+/// Waiting spins for about 0.1 ms, then sleeps, so that neither a busy train nor an idle one wastes a
 /// core.
 class ThreadTeam {
  public:
