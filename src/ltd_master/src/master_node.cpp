@@ -140,7 +140,7 @@ int MasterNode::Run() {
     progress->Show(record.time_s, record.mean_speed_mps);
   });
 
-  ros::AsyncSpinner spinner(1);
+  ros::AsyncSpinner spinner(2);  // a step may wait while another service is called
   spinner.start();
   std::string fault;
   int exit_code = kSuccess;

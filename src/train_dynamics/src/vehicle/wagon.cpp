@@ -1,7 +1,9 @@
 #include "train_dynamics/vehicle/wagon.h"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
@@ -74,6 +76,17 @@ Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.fric
   plate_carbody_arm_m = p.centre_plate.height_m - p.carbody.cg_height_m;
   plate_bolster_arm_m = p.centre_plate.height_m - p.bolster.cg_height_m;
   coupler_arm_m = p.coupler_height_m - p.carbody.cg_height_m;
+  // The wedges of a bogie are solved by sweeps, whose number suits a weak coupling (WedgeFrictionForces).
+  const double both = inv_mass_per_kg[kFrontBolster] + inv_mass_per_kg[kFrontFrame];
+  const double turn = p.friction_wedge.offset_m * p.friction_wedge.offset_m *
+                      (inv_inertia_per_kgm2[kFrontBolster] + inv_inertia_per_kgm2[kFrontFrame]);
+  constexpr double kStrongestCoupling = 0.5;
+  if (std::abs(both - turn) > kStrongestCoupling * (both + turn)) {
+    throw std::invalid_argument(
+        "friction_wedge.offset_m couples the wedges of a bogie too strongly for the time step: "
+        "it must be nearer to " +
+        std::to_string(p.friction_wedge.offset_m * std::sqrt(both / turn)) + " m");
+  }
   weight_n = p.Weight();
   creep_stiffness = CreepStiffnessOf(p);
   rolling = {p.wheelset.wheel_radius_m, 1.0 / p.wheelset.mass_kg, 1.0 / p.wheelset.pitch_inertia_kgm2};

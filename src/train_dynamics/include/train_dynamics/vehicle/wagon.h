@@ -81,7 +81,8 @@ struct WagonOutput {
 
 /// What is constant in a wagon.
 struct Wagon {
-  /// @throws std::invalid_argument when the parameters violate their rules
+  /// @throws std::invalid_argument when the parameters violate their rules, or the wedges of a bogie are
+  ///         coupled too strongly for the time step
   explicit Wagon(const VehicleParams& params);
 
   VehicleParams params;
