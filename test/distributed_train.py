@@ -207,6 +207,7 @@ class DistributedTrain(unittest.TestCase):
         time.sleep(1.0)
         recorder.send_signal(signal.SIGINT)
         recorder.wait(30)
+        self.assertTrue(wait_until(bag.exists, 30))  # the rosbag command ends before the recorder that it has started
         with rosbag.Bag(str(bag)) as recorded:
             last = [m for _, m, _ in recorded.read_messages("/train/state")][-1]
         self.assertEqual(launch.summary()["state_digest"], "%016x" % last.state_digest)
