@@ -20,10 +20,10 @@ sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)
 # What of a build's output is worth reading: the steps and the complaints.
 quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Install space|Creating symlink|\#\#\#\#|-- |Consolidate compiler)|.*\] Built target )/d'
 
-# All tests of the build folder $(1), the output of failed ones, and "N passed, N failed". /usr/bin comes first, because
+# All tests of the build folder $(1), each in $(2) seconds (600), the output of failed ones, and "N passed, N failed". /usr/bin comes first, because
 # tools of ROS start "python3".
 run_tests = rm -rf $(1)/test_results $(1)/Testing; \
-  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout 600 --output-on-failure); \
+  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure); \
   tools/test_summary.py $(1)
 
 sources = find src -name '*.h' -o -name '*.cpp'
@@ -61,7 +61,7 @@ test: check-deps build ## build and run all tests
 test-sanitize: deps ## the same with the address and undefined-behaviour sanitizers, in build_sanitize/
 	@$(sanitize) $(quietly)
 	@$(sanitize) tests $(quietly)
-	@$(call run_tests,build_sanitize)
+	@$(call run_tests,build_sanitize,3000)
 
 .PHONY: test-cluster
 test-cluster: build ## a train over three machines (network namespaces with sshd; needs root)
