@@ -107,7 +107,7 @@ void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
   fmt::print(couplers,
              "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n");
   int number = 1;
-  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().extremes()) {
+  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
     fmt::print(couplers, "{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
                extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
   }

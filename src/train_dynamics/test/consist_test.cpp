@@ -110,10 +110,10 @@ TEST(InTrainForces, AreTheLawsAtThePredictedExtension) {
   EXPECT_NEAR(force[2], SmoothGearForce(gear, 0.04 - kAhead * 0.3, -0.3).force, 1e-6);
   EXPECT_NEAR(force[3], bar(-0.002, 0.0), 1e-6);
   // Extremes: what has been, with its time.
-  EXPECT_EQ(forces.extremes()[0].tension_n, force[1]);
-  EXPECT_EQ(forces.extremes()[0].tension_time_s, 1.0);
-  EXPECT_EQ(forces.extremes()[2].compression_n, force[3]);
-  EXPECT_EQ(forces.extremes()[2].tension_n, 0.0);
+  EXPECT_EQ(forces.Extremes()[0].tension_n, force[1]);
+  EXPECT_EQ(forces.Extremes()[0].tension_time_s, 1.0);
+  EXPECT_EQ(forces.Extremes()[2].compression_n, force[3]);
+  EXPECT_EQ(forces.Extremes()[2].tension_n, 0.0);
 }
 
 // Free vehicles on level track without resistance, joined and let go.
@@ -137,7 +137,7 @@ class FreeTrain {
       VehicleLoads<double> loads;
       loads.front_coupler_n = force_[i];
       loads.rear_coupler_n = force_[i + 1];
-      StepLtd(vehicle_, {}, LtdIntegrator::kLeapfrog, loads, dt_, states_[i]);
+      StepLtd(vehicle_, {}, loads, dt_, states_[i]);
     }
     forces_.CloseInterval(Displacements());
   }

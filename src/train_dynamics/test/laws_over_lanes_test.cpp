@@ -97,10 +97,10 @@ TEST(LawsOverLanes, LtdStepsGiveTheBitsOfDouble) {
   for (int step = 0; step < 20000; ++step) {
     VehicleLoads<double> loads;
     loads.cylinder_pressure_pa = Pressure(step);
-    for (LtdState<double>& s : scalar) StepLtd(vehicle, track, LtdIntegrator::kLeapfrog, loads, 1e-3, s);
+    for (LtdState<double>& s : scalar) StepLtd(vehicle, track, loads, 1e-3, s);
     VehicleLoads<Pack> packed_loads;
     packed_loads.cylinder_pressure_pa = Pack(Pressure(step));
-    StepLtd(vehicle, track, LtdIntegrator::kLeapfrog, packed_loads, 1e-3, packed);
+    StepLtd(vehicle, track, packed_loads, 1e-3, packed);
     for (int lane = 0; lane < kCount; ++lane) {
       ASSERT_EQ(scalar[lane].x_m, packed.x_m[lane]) << step;
       ASSERT_EQ(scalar[lane].v_mps, packed.v_mps[lane]) << step;

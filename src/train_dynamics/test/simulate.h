@@ -59,7 +59,7 @@ inline Outcome Simulate(const std::string& scenario, const std::vector<std::stri
   master.Start();
   while (!master.Done()) master.Exchange();
   outcome.digest = master.state_digest();
-  outcome.coupler_extremes = master.in_train_forces().extremes();
+  outcome.coupler_extremes = master.in_train_forces().Extremes();
   return outcome;
 }
 

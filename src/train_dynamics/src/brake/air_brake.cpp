@@ -5,13 +5,13 @@
 #include <limits>
 #include <stdexcept>
 
-#include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/numeric/monotone_cubic.h"
 
 namespace train_dynamics {
 namespace {
 
 constexpr double kPaPerKpa = 1000.0;
+constexpr int kLanes = 8;  // the stride of the phases is a multiple of
 
 /// How a command acts on the pipe and the cylinders, before distances are known.
 struct CommandEffect {
@@ -51,21 +51,29 @@ int SourceIndex(const BrakeSourceParams& source, int vehicles) {
   return index;
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The pressure from `begin_s` on tends from `begin_pa` to `target_pa`.
+struct Phase {
+  double begin_s, begin_pa, target_pa, rate_per_s;
+
+  double PressureAt(double time_s) const {
+    return CylinderPressure<double>({1, 1, &begin_s, &begin_pa, &target_pa, &rate_per_s}, 0, time_s);
+  }
+};
+constexpr Phase kReleased = {0.0, 0.0, 0.0, 0.0};
+constexpr Phase kNever = {kInfinity, 0.0, 0.0, 0.0};
+
 }  // namespace
 
 bool ServiceApplicationParams::Ascending(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
-double AirBrake::Phase::PressureAt(double time_s) const {
-  return target_pa + (begin_pa - target_pa) * Exp(-rate_per_s * (time_s - begin_s));
-}
-
 AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
                    const std::vector<double>& vehicle_positions_m) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const int n = static_cast<int>(vehicle_positions_m.size());
-  phases_.assign(n, {Phase{0.0, 0.0, 0.0, 0.0}});
+  std::vector<std::vector<Phase>> vehicles(n, {kReleased});
   double last_time = 0.0;
   for (const BrakeCommand& command : commands) {
     if (command.time_s < last_time) throw std::invalid_argument("the times of brake commands must ascend");
@@ -87,27 +95,38 @@ AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>
         throw std::invalid_argument("the emergency rise rate falls to zero " + std::to_string(distance) +
                                     " m from its source; rise_rate_fall_per_s is too large for this train");
       }
-      std::vector<Phase>& phases = phases_[i];
+      std::vector<Phase>& phases = vehicles[i];
       while (phases.size() > 1 && phases.back().begin_s >= arrival) phases.pop_back();  // overtaken
       const double begin_pa = phases.back().PressureAt(arrival);
       const double target_pa = effect.is_release ? 0.0 : std::max(effect.target_pa, begin_pa);
       phases.push_back({arrival, begin_pa, target_pa, rate});
     }
   }
-}
-
-void AirBrake::PressuresAt(double time_s, std::vector<double>& pressure_pa) const {
-  pressure_pa.resize(phases_.size());
-  for (size_t i = 0; i < phases_.size(); ++i) {
-    size_t k = phases_[i].size() - 1;
-    while (k > 0 && phases_[i][k].begin_s > time_s) --k;
-    pressure_pa[i] = phases_[i][k].PressureAt(time_s);
+  std::size_t most = 0;
+  for (const std::vector<Phase>& phases : vehicles) most = std::max(most, phases.size());
+  vehicles_ = n;
+  stride_ = (n + kLanes - 1) / kLanes * kLanes;
+  for (std::size_t phase = 0; phase < most; ++phase) {
+    for (int i = 0; i < stride_; ++i) {
+      const bool has = i < n && phase < vehicles[i].size();
+      const Phase& p = has ? vehicles[i][phase] : phase == 0 ? kReleased : kNever;
+      begin_s_.push_back(p.begin_s);
+      begin_pa_.push_back(p.begin_pa);
+      target_pa_.push_back(p.target_pa);
+      rate_per_s_.push_back(p.rate_per_s);
+    }
   }
 }
 
-double AirBrake::ArrivalTime(int vehicle) const {
-  const std::vector<Phase>& phases = phases_.at(vehicle);
-  return phases.size() > 1 ? phases.back().begin_s : std::numeric_limits<double>::infinity();
+BrakePhases AirBrake::Phases() const {
+  const int phases = stride_ > 0 ? static_cast<int>(begin_s_.size()) / stride_ : 0;
+  return {phases, stride_, begin_s_.data(), begin_pa_.data(), target_pa_.data(), rate_per_s_.data()};
+}
+
+void AirBrake::PressuresAt(double time_s, std::vector<double>& pressure_pa) const {
+  pressure_pa.resize(vehicles_);
+  const BrakePhases phases = Phases();
+  for (int i = 0; i < vehicles_; ++i) pressure_pa[i] = CylinderPressure<double>(phases, i, time_s);
 }
 
 }  // namespace train_dynamics

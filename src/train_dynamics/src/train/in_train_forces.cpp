@@ -1,89 +1,109 @@
 #include "train_dynamics/train/in_train_forces.h"
 
+#include "train_dynamics/vehicle/lane_kernels.h"
+
 namespace train_dynamics {
 
 InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s)
-    : types_(consist.connection_types), type_(consist.connection_type), prediction_s_(prediction_s) {
-  for (const ConnectionParams& type : types_) {
-    gears_.emplace_back(type.kind == ConnectionKind::kDraftGears ? type.draft_gear : DraftGearParams{});
-  }
+    : prediction_s_(prediction_s) {
+  for (const ConnectionParams& type : consist.connection_types) sets_.emplace_back(type);
   const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
-  for (int type : type_) {
-    const bool has_slack = types_[type].kind == ConnectionKind::kDraftGears;
-    start_extension_m_.push_back(has_slack ? side * types_[type].draft_gear.slack_m : 0.0);
+  for (const int type : consist.connection_type) {
+    Set& set = sets_[type];
+    places_.push_back({type, static_cast<int>(set.place.size())});
+    set.place.push_back(static_cast<int>(extension_m_.size()));
+    const bool has_slack = set.type.kind == ConnectionKind::kDraftGears;
+    extension_m_.push_back(has_slack ? side * set.type.gear.params.slack_m : 0.0);
   }
-  extension_m_ = start_extension_m_;
-  const size_t n = type_.size();
-  force_n_.assign(n, 0.0);
-  elastic_n_.assign(n, 0.0);
-  dissipated_j_.assign(n, 0.0);
-  extremes_.resize(n);
-  for (double q : start_extension_m_) stick_.push_back({q, 0.0});
+  start_extension_m_ = extension_m_;
+  rate_mps_.assign(extension_m_.size(), 0.0);
+  for (Set& set : sets_) {
+    set.Resize(PaddedToLanes(static_cast<int>(set.place.size())));
+    for (std::size_t i = 0; i < set.place.size(); ++i) {
+      set.extension_m[i] = set.stick_m[i] = extension_m_[set.place[i]];
+    }
+  }
+}
+
+void InTrainForces::Set::Resize(int padded) {
+  for (std::vector<double>* array :
+       {&rate_mps, &extension_m, &force_n, &elastic_n, &stick_m, &stick_n, &tension_n, &tension_time_s,
+        &compression_n, &compression_time_s, &dissipated_j}) {
+    array->assign(padded, 0.0);
+  }
+}
+
+ConnectionArrays InTrainForces::Set::Arrays() {
+  return {rate_mps.data(),      extension_m.data(),       force_n.data(),   elastic_n.data(),
+          stick_m.data(),       stick_n.data(),           tension_n.data(), tension_time_s.data(),
+          compression_n.data(), compression_time_s.data()};
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
-  for (size_t c = 0; c < type_.size(); ++c) {
+  for (std::size_t c = 0; c < extension_m_.size(); ++c) {
     start_extension_m_[c] = extension_m_[c] - (head_displacement_m[c] - head_displacement_m[c + 1]);
   }
 }
 
 void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velocity_mps,
                              std::vector<double>& force_n) {
-  const size_t n = type_.size();
+  const std::size_t n = extension_m_.size();
+  for (std::size_t c = 0; c < n; ++c) rate_mps_[c] = head_velocity_mps[c] - head_velocity_mps[c + 1];
   force_n.resize(n + 2);
   force_n.front() = force_n.back() = 0.0;
-  for (size_t c = 0; c < n; ++c) {
-    const double rate = head_velocity_mps[c] - head_velocity_mps[c + 1];
-    const double q = extension_m_[c] + prediction_s_ * rate;
-    const ConnectionParams& type = types_[type_[c]];
-    GearForce<double> f;
-    if (type.kind == ConnectionKind::kDrawBar) {
-      f.elastic = type.draw_bar.stiffness_n_per_m * q;
-      f.force = f.elastic + type.draw_bar.damping_ns_per_m * rate;
-    } else if (type.draft_gear.friction == DraftGearFriction::kSmooth) {
-      f = SmoothGearForce(gears_[type_[c]], q, rate);
-    } else {
-      f = StickSpringGearForce(gears_[type_[c]], q, rate, stick_[c]);
-    }
-    force_n_[c] = f.force;
-    elastic_n_[c] = f.elastic;
-    force_n[c + 1] = f.force;
-    ForceExtremes& extreme = extremes_[c];
-    if (f.force > extreme.tension_n) extreme.tension_n = f.force, extreme.tension_time_s = time_s;
-    if (f.force < extreme.compression_n) extreme.compression_n = f.force, extreme.compression_time_s = time_s;
+  for (Set& set : sets_) {
+    for (std::size_t i = 0; i < set.place.size(); ++i) set.rate_mps[i] = rate_mps_[set.place[i]];
+    BestLaneKernels().connection_forces(set.type, prediction_s_, time_s,
+                                        static_cast<int>(set.rate_mps.size()), set.Arrays());
+    for (std::size_t i = 0; i < set.place.size(); ++i) force_n[set.place[i] + 1] = set.force_n[i];
   }
 }
 
 void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m) {
-  for (size_t c = 0; c < type_.size(); ++c) {
-    const double q = start_extension_m_[c] + (head_displacement_m[c] - head_displacement_m[c + 1]);
-    dissipated_j_[c] += (force_n_[c] - elastic_n_[c]) * (q - extension_m_[c]);
-    extension_m_[c] = q;
+  for (std::size_t c = 0; c < extension_m_.size(); ++c) {
+    extension_m_[c] = start_extension_m_[c] + (head_displacement_m[c] - head_displacement_m[c + 1]);
+  }
+  for (Set& set : sets_) {
+    for (std::size_t i = 0; i < set.place.size(); ++i) {
+      const double extension_m = extension_m_[set.place[i]];
+      set.dissipated_j[i] += (set.force_n[i] - set.elastic_n[i]) * (extension_m - set.extension_m[i]);
+      set.extension_m[i] = extension_m;
+    }
   }
 }
 
+std::vector<ForceExtremes> InTrainForces::Extremes() const {
+  std::vector<ForceExtremes> extremes;
+  for (const Place& place : places_) {
+    const Set& set = sets_[place.set];
+    extremes.push_back({set.tension_n[place.at], set.tension_time_s[place.at], set.compression_n[place.at],
+                        set.compression_time_s[place.at]});
+  }
+  return extremes;
+}
+
 void InTrainForces::AddMemoryTo(Digest& digest) const {
-  for (size_t c = 0; c < type_.size(); ++c) {
-    const ConnectionParams& type = types_[type_[c]];
-    const bool remembers = type.kind == ConnectionKind::kDraftGears &&
-                           type.draft_gear.friction == DraftGearFriction::kStickSpring;
+  for (const Place& place : places_) {
+    const Set& set = sets_[place.set];
+    const bool remembers = set.type.kind == ConnectionKind::kDraftGears &&
+                           set.type.gear.params.friction == DraftGearFriction::kStickSpring;
     if (!remembers) continue;
-    digest.Add(stick_[c].q);
-    digest.Add(stick_[c].force);
+    digest.Add(set.stick_m[place.at]);
+    digest.Add(set.stick_n[place.at]);
   }
 }
 
 ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
-  for (size_t c = 0; c < type_.size(); ++c) {
-    const ConnectionParams& type = types_[type_[c]];
-    const double q = extension_m_[c];
-    if (type.kind == ConnectionKind::kDrawBar) {
-      energy.potential += 0.5 * type.draw_bar.stiffness_n_per_m * q * q;
-      energy.draw_bars += dissipated_j_[c];
+  for (const Place& place : places_) {
+    const Set& set = sets_[place.set];
+    const double q = set.extension_m[place.at];
+    if (set.type.kind == ConnectionKind::kDrawBar) {
+      energy.potential += 0.5 * set.type.bar.stiffness_n_per_m * q * q;
+      energy.draw_bars += set.dissipated_j[place.at];
     } else {
-      energy.potential += GearEnergy(type.draft_gear, q);
-      energy.draft_gears += dissipated_j_[c];
+      energy.potential += GearEnergy(set.type.gear.params, q);
+      energy.draft_gears += set.dissipated_j[place.at];
     }
   }
   return energy;

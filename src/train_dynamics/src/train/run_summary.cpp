@@ -97,10 +97,10 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"stop_time_s\": " << (stopped_ ? Number(stop_time_s_) : "null")
        << ",\n  \"stop_distance_m\": " << (stopped_ ? Number(stop_distance_m_) : "null")
        << ",\n  \"max_tension_n\": "
-       << Extreme(master.in_train_forces().extremes(), &ForceExtremes::tension_n,
+       << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::tension_n,
                   &ForceExtremes::tension_time_s)
        << ",\n  \"max_compression_n\": "
-       << Extreme(master.in_train_forces().extremes(), &ForceExtremes::compression_n,
+       << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::compression_n,
                   &ForceExtremes::compression_time_s)
        << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_energy_j_)

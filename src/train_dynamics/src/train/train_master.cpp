@@ -4,12 +4,18 @@
 #include <limits>
 #include <memory>
 
+#include "train_dynamics/vehicle/lane_kernels.h"
+
 namespace train_dynamics {
 
 PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
   const auto brake = std::make_shared<const AirBrake>(*scenario.brake, scenario.commands, consist.centre_m);
-  return
-      [brake](double time_s, std::vector<double>& pressure_pa) { brake->PressuresAt(time_s, pressure_pa); };
+  return [brake](double time_s, std::vector<double>& pressure_pa) {
+    const BrakePhases phases = brake->Phases();
+    pressure_pa.resize(phases.stride);  // whole packs of lanes
+    BestLaneKernels().cylinder_pressures(phases, time_s, phases.stride, pressure_pa.data());
+    pressure_pa.resize(brake->vehicles());
+  };
 }
 
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,

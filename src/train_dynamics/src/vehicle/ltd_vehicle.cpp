@@ -4,12 +4,13 @@
 
 namespace train_dynamics {
 
-LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia)
+LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method)
     : brake_rigging(params.brake_rigging),
       propulsion_resistance(params.propulsion_resistance),
       weight_n(params.Weight()),
       inertia_kg(params.TotalMass() +
-                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)) {
+                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)),
+      integrator(method) {
   Validate(params);
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/parameters.h"
 
 namespace train_dynamics {
@@ -125,6 +126,34 @@ struct BrakeCommand {
   }
 };
 
+/// Every vehicle's cylinder as phases, in each of which its pressure tends to a target:
+///
+///   p = target + (begin - target) exp(-rate (t - t_begin)),  from t_begin until the next phase begins
+///
+/// Arrays of [phase][vehicle], `stride` vehicles to a phase. The first phase begins before all times that are
+/// asked for; one that a vehicle does not have begins at infinity.
+struct BrakePhases {
+  int phases, stride;
+  const double *begin_s, *begin_pa, *target_pa, *rate_per_s;
+};
+
+/// Cylinder pressure of a vehicle, or of several from it on [Pa], at a time.
+template <class T>
+T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
+  T begin_s = Load<T>(p.begin_s + vehicle), begin_pa = Load<T>(p.begin_pa + vehicle);
+  T target_pa = Load<T>(p.target_pa + vehicle), rate_per_s = Load<T>(p.rate_per_s + vehicle);
+  for (int phase = 1; phase < p.phases; ++phase) {
+    const int at = phase * p.stride + vehicle;
+    const T next_s = Load<T>(p.begin_s + at);
+    const MaskOf<T> begun = next_s <= T(time_s);
+    begin_s = Select(begun, next_s, begin_s);
+    begin_pa = Select(begun, Load<T>(p.begin_pa + at), begin_pa);
+    target_pa = Select(begun, Load<T>(p.target_pa + at), target_pa);
+    rate_per_s = Select(begun, Load<T>(p.rate_per_s + at), rate_per_s);
+  }
+  return target_pa + (begin_pa - target_pa) * Exp(-rate_per_s * (T(time_s) - begin_s));
+}
+
 /// Cylinder pressures of a train under a list of driver commands (paper Eq 2).
 ///
 /// A command reaches vehicle i when the first wave does:
@@ -147,22 +176,17 @@ class AirBrake {
   AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
            const std::vector<double>& vehicle_positions_m);
 
-  int vehicles() const { return static_cast<int>(phases_.size()); }
+  int vehicles() const { return vehicles_; }
+
+  /// What the pressures are made of; the stride is a multiple of 8.
+  BrakePhases Phases() const;
 
   /// Cylinder pressure of each vehicle [Pa] at time t [s]; resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) const;
 
-  /// Time at which the last command reaches the vehicle [s]; infinity without commands. vehicle counts from
-  /// 0.
-  double ArrivalTime(int vehicle) const;
-
  private:
-  /// The pressure from `begin_s` on tends from `begin_pa` to `target_pa`.
-  struct Phase {
-    double begin_s, begin_pa, target_pa, rate_per_s;
-    double PressureAt(double time_s) const;
-  };
-  std::vector<std::vector<Phase>> phases_;  ///< [vehicle][0 = released until the first command, ...]
+  int vehicles_, stride_;
+  std::vector<double> begin_s_, begin_pa_, target_pa_, rate_per_s_;  ///< [phase][vehicle]
 };
 
 }  // namespace train_dynamics

@@ -216,6 +216,7 @@ template <int N, int kWidth>
 struct ScalarTypes<Lanes<N, kWidth>> {
   using Mask = LaneMask<N, kWidth>;
   using Bits = LaneBits<N, kWidth>;
+  static constexpr int kLanes = N;
 };
 
 template <class Function, int N, int kWidth>

@@ -27,6 +27,7 @@ template <>
 struct ScalarTypes<double> {
   using Mask = bool;
   using Bits = std::uint64_t;
+  static constexpr int kLanes = 1;
 };
 
 /// What a comparison of two T yields.
@@ -36,6 +37,28 @@ using MaskOf = typename ScalarTypes<T>::Mask;
 /// The 64-bit pattern of T: has + and - modulo 2^64, << and >> by a count, where zeros enter.
 template <class T>
 using BitsOf = typename ScalarTypes<T>::Bits;
+
+/// How many numbers a T holds.
+template <class T>
+inline constexpr int kLanesOf = ScalarTypes<T>::kLanes;
+
+/// As many consecutive numbers as a T holds, from and to memory.
+template <class T>
+T Load(const double* from) {
+  if constexpr (kLanesOf<T> == 1) {
+    return *from;
+  } else {
+    return T::Load(from);
+  }
+}
+template <class T>
+void Store(const T& x, double* to) {
+  if constexpr (kLanesOf<T> == 1) {
+    *to = x;
+  } else {
+    x.Store(to);
+  }
+}
 
 /// `a` where the mask holds, else `b`. Both are evaluated, and the one not chosen may be NaN or infinite.
 /// (For a single double a compiler may make a branch of it and skip the other's arithmetic; the bits are the

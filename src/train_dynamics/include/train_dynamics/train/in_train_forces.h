@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/consist.h"
-#include "train_dynamics/train/digest.h"
 
 namespace train_dynamics {
 
@@ -47,8 +47,9 @@ class InTrainForces {
   /// Books the work of the last forces, once the interval has brought the heads to these displacements.
   void CloseInterval(const std::vector<double>& head_displacement_m);
 
-  int connections() const { return static_cast<int>(start_extension_m_.size()); }
-  const std::vector<ForceExtremes>& extremes() const { return extremes_; }
+  int connections() const { return static_cast<int>(extension_m_.size()); }
+  /// [connection], from the front
+  std::vector<ForceExtremes> Extremes() const;
   /// Extension of each connection at the last exchange [m].
   const std::vector<double>& extension_m() const { return extension_m_; }
   /// Adds the memory of stick-spring draft gears, which is part of the train's state.
@@ -56,15 +57,27 @@ class InTrainForces {
   ConnectionEnergy Energy() const;
 
  private:
-  std::vector<ConnectionParams> types_;
-  std::vector<DraftGear> gears_;  ///< [type]; unused entries for draw-bars
-  std::vector<int> type_;         ///< [connection]
+  /// The connections of one type, side by side, filled up to whole packs of lanes.
+  struct Set {
+    explicit Set(const ConnectionParams& params) : type(params) {}
+    void Resize(int padded);
+    ConnectionArrays Arrays();
+
+    Connection type;
+    std::vector<int> place;  ///< [connection of the set] in the train
+    std::vector<double> rate_mps, extension_m, force_n, elastic_n, stick_m, stick_n;
+    std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
+    std::vector<double> dissipated_j;
+  };
+  /// Where a connection of the train is.
+  struct Place {
+    int set, at;
+  };
+
   double prediction_s_;
-  std::vector<double> start_extension_m_, extension_m_;
-  std::vector<double> force_n_, elastic_n_;  ///< of the running interval
-  std::vector<StickState<double>> stick_;
-  std::vector<double> dissipated_j_;
-  std::vector<ForceExtremes> extremes_;
+  std::vector<Set> sets_;
+  std::vector<Place> places_;                                       ///< [connection]
+  std::vector<double> start_extension_m_, extension_m_, rate_mps_;  ///< [connection]
 };
 
 }  // namespace train_dynamics

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "train_dynamics/train/digest.h"
+#include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/vehicle/wagon.h"
 
 /// The exchange between the master, which computes what acts between vehicles, and the ranks, which integrate

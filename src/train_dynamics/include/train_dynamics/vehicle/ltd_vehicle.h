@@ -1,8 +1,13 @@
 #pragma once
 
+#include <array>
+#include <limits>
+
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/track/track.h"
+#include "train_dynamics/vehicle/absurd.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
+#include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/work.h"
 
 namespace train_dynamics {
@@ -14,15 +19,14 @@ inline double EquivalentRotationalMass(const WheelsetParams& wheelset, int wheel
   return wheelsets * wheelset.pitch_inertia_kgm2 / (wheelset.wheel_radius_m * wheelset.wheel_radius_m);
 }
 
-/// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
-struct LtdVehicle {
-  /// @throws std::invalid_argument when the parameters violate their rules
-  LtdVehicle(const VehicleParams& params, bool with_rotational_inertia);
-
-  BrakeRiggingParams brake_rigging;
-  PropulsionResistanceParams propulsion_resistance;
-  double weight_n;    ///< m g
-  double inertia_kg;  ///< m, or m + m_e
+/// How the one degree of freedom is stepped.
+///
+/// Both use the forces of paper Eq 1 once per step and are symplectic; they sample the same trajectory half a
+/// step apart.
+enum class LtdIntegrator {
+  kLeapfrog,  ///< half drift, kick, half drift: forces at the middle of the step
+  kNewmark,  ///< the paper's explicit Newmark method, beta = 0, gamma = 1/2: forces at the start of the step;
+             ///< `v_mps` is its predicted velocity, i.e. that of half a step earlier
 };
 
 template <class T>
@@ -39,14 +43,24 @@ struct LtdOutput {
   T shoe_force_n{};  ///< of all shoes, as far as it acts; backwards positive
 };
 
-/// How the one degree of freedom is stepped.
-///
-/// Both use the forces of paper Eq 1 once per step and are symplectic; they sample the same trajectory half a
-/// step apart.
-enum class LtdIntegrator {
-  kLeapfrog,  ///< half drift, kick, half drift: forces at the middle of the step
-  kNewmark,  ///< the paper's explicit Newmark method, beta = 0, gamma = 1/2: forces at the start of the step;
-             ///< `v_mps` is its predicted velocity, i.e. that of half a step earlier
+/// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
+struct LtdVehicle {
+  /// @throws std::invalid_argument when the parameters violate their rules
+  LtdVehicle(const VehicleParams& params, bool with_rotational_inertia,
+             LtdIntegrator method = LtdIntegrator::kLeapfrog);
+
+  template <class T>
+  using State = LtdState<T>;
+  template <class T>
+  using Output = LtdOutput<T>;
+  /// Of the state as an array of numbers: x_m and v_mps.
+  static constexpr std::array<int, 2> kDigestedFields = {1, 2};
+
+  BrakeRiggingParams brake_rigging;
+  PropulsionResistanceParams propulsion_resistance;
+  double weight_n;    ///< m g
+  double inertia_kg;  ///< m, or m + m_e
+  LtdIntegrator integrator;
 };
 
 /// One time step of paper Eq 1.
@@ -58,8 +72,31 @@ enum class LtdIntegrator {
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
 /// @param output  receives what the step shows; may be null
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
-             const VehicleLoads<T>& loads, double dt, LtdState<T>& s, LtdOutput<T>* output = nullptr);
+void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+             LtdState<T>& s, LtdOutput<T>* output = nullptr);
+
+/// Displacement of the coupler heads since the start [m]: the vehicle's own, which is rigid.
+template <class T>
+T CouplerHeadDisplacement(const LtdVehicle& /*vehicle*/, const LtdState<T>& s) {
+  return s.x_m;
+}
+/// Velocity of the coupler heads [m/s].
+template <class T>
+T CouplerHeadVelocity(const LtdVehicle& /*vehicle*/, const LtdState<T>& s) {
+  return s.v_mps;
+}
+
+template <class T>
+VehicleRecord<T> RecordOf(const LtdVehicle& /*vehicle*/, const LtdState<T>& s, const LtdOutput<T>& out) {
+  const T none = T(std::numeric_limits<double>::quiet_NaN());
+  return {s.x_m, s.v_mps, s.origin_m + s.x_m, s.v_mps, out.shoe_force_n, none, none};
+}
+
+/// Whether the speed is one that a vehicle can have; false for anything that is not a number.
+template <class T>
+MaskOf<T> IsSound(const LtdState<T>& s) {
+  return Abs(s.v_mps) < T(absurd::kSpeed);
+}
 
 /// Kinetic energy [J]; the only store of energy in an LTD vehicle.
 template <class T>
@@ -70,10 +107,10 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, LtdIntegrator integrator,
-             const VehicleLoads<T>& loads, double dt, LtdState<T>& s, LtdOutput<T>* output) {
+void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+             LtdState<T>& s, LtdOutput<T>* output) {
   const T v0 = s.v_mps;
-  const double drift = integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
+  const double drift = vehicle.integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
   s.x_m = s.x_m + drift * v0;
 
   const T gravity = -vehicle.weight_n * GradeUnder(track, s.origin_m + s.x_m);

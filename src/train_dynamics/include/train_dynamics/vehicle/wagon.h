@@ -3,7 +3,9 @@
 #include <array>
 
 #include "train_dynamics/track/track.h"
+#include "train_dynamics/vehicle/absurd.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
+#include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wheelset_slip.h"
 #include "train_dynamics/vehicle/work.h"
 
@@ -84,6 +86,20 @@ struct Wagon {
   /// @throws std::invalid_argument when the parameters violate their rules, or the wedges of a bogie are
   ///         coupled too strongly for the time step
   explicit Wagon(const VehicleParams& params);
+
+  template <class T>
+  using State = WagonState<T>;
+  template <class T>
+  using Output = WagonOutput<T>;
+  /// Of the state as an array of numbers: for positions, then velocities, x, z and pitch of each body.
+  static constexpr std::array<int, 6 * kBodies> kDigestedFields = [] {
+    std::array<int, 6 * kBodies> fields{};
+    for (int i = 0; i < 6 * kBodies; ++i) {
+      const int motion = i / (3 * kBodies), body = i / 3 % kBodies, axis = i % 3;
+      fields[i] = 1 + (3 * motion + axis) * kBodies + body;  // behind origin_m
+    }
+    return fields;
+  }();
 
   VehicleParams params;
   FrictionWedge wedge;
@@ -223,13 +239,31 @@ T CouplerHead(const Wagon& wagon, const BodyVector<T>& carbody_motion) {
   return carbody_motion.x[kCarbody] + wagon.coupler_arm_m * carbody_motion.pitch[kCarbody];
 }
 
-/// Limits beyond which a wagon has left every law's domain.
-namespace absurd {
-inline constexpr double kSpeed = 300.0;      ///< of any body [m/s]
-inline constexpr double kMovement = 1.0;     ///< of any body, vertical [m]
-inline constexpr double kPitch = 0.5;        ///< of any body but a wheelset [rad]
-inline constexpr double kRotation = 3000.0;  ///< of a wheelset [rad/s]
-}  // namespace absurd
+template <class T>
+T CouplerHeadDisplacement(const Wagon& wagon, const WagonState<T>& s) {
+  return CouplerHead(wagon, s.position);
+}
+template <class T>
+T CouplerHeadVelocity(const Wagon& wagon, const WagonState<T>& s) {
+  return CouplerHead(wagon, s.velocity);
+}
+
+template <class T>
+VehicleRecord<T> RecordOf(const Wagon& wagon, const WagonState<T>& s, const WagonOutput<T>& out) {
+  T shoes(0.0), wheels(0.0), creepage(0.0);
+  for (int i = 0; i < kWheelsets; ++i) {
+    shoes = shoes + out.shoe_force_n[i];
+    wheels = wheels + out.creep_force_n[i];
+    creepage = Select(Abs(out.creepage[i]) <= Abs(creepage), creepage, out.creepage[i]);  // keeps NaN
+  }
+  return {CouplerHeadDisplacement(wagon, s),
+          CouplerHeadVelocity(wagon, s),
+          s.origin_m + s.position.x[kCarbody],
+          s.velocity.x[kCarbody],
+          shoes,
+          wheels,
+          creepage};
+}
 
 /// Whether every body is where and as fast as a body can be; false for anything that is not a number.
 template <class T>

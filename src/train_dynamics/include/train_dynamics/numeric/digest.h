@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <string>
 
+#include "train_dynamics/numeric/scalar.h"
+
 namespace train_dynamics {
 
 /// 64-bit digest of a sequence of numbers, by their bits: equal digests mean equal bits.
 class Digest {
  public:
-  void Add(double value);
+  void Add(double value) { Add(ToBits(value)); }
   void Add(std::uint64_t value) { state_ = Mix(state_ ^ value); }
   std::uint64_t value() const { return state_; }
 

@@ -1,12 +1,8 @@
-#include "train_dynamics/train/digest.h"
+#include "train_dynamics/numeric/digest.h"
 
 #include <algorithm>
 
-#include "train_dynamics/numeric/scalar.h"
-
 namespace train_dynamics {
-
-void Digest::Add(double value) { Add(ToBits(value)); }
 
 std::uint64_t TextDigest(const std::string& text) {
   Digest digest;

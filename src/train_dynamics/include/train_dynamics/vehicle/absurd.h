@@ -1,0 +1,11 @@
+#pragma once
+
+/// Limits beyond which a vehicle has left every law's domain.
+namespace train_dynamics::absurd {
+
+inline constexpr double kSpeed = 300.0;      ///< of any body [m/s]
+inline constexpr double kMovement = 1.0;     ///< of any body, vertical [m]
+inline constexpr double kPitch = 0.5;        ///< of any body but a wheelset [rad]
+inline constexpr double kRotation = 3000.0;  ///< of a wheelset [rad/s]
+
+}  // namespace train_dynamics::absurd

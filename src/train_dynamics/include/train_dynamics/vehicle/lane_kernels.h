@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/coupler/connection.h"
+#include "train_dynamics/vehicle/ltd_vehicle.h"
+#include "train_dynamics/vehicle/wagon.h"
+
+namespace train_dynamics {
+
+/// The arrays of an exchange from the place of one vehicle on; a pack reads and writes one number per lane.
+struct VehicleArrays {
+  const double* front_coupler_n;
+  const double* rear_coupler_n;
+  const double* cylinder_pressure_pa;
+  double* head_displacement_m;  ///< of the coupler heads since the start
+  double* head_velocity_mps;
+};
+
+/// The time step and the laws between vehicles, `lanes` of them side by side in the registers of one
+/// instruction set.
+///
+/// State and output of a pack of vehicles lie in memory as [field][lane] of doubles, the fields in the order
+/// of the vehicle's State and Output; 64-byte aligned.
+struct LaneKernels {
+  /// Advances a pack of one type by `steps` steps of dt.
+  /// @param output  what the last step shows; may be null
+  /// @return whether all lanes are sound
+  template <class Vehicle>
+  using StepPack = bool (*)(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
+                            const VehicleArrays& arrays, std::byte* state, std::byte* output);
+
+  /// What a record holds of a pack.
+  template <class Vehicle>
+  using RecordPack = void (*)(const Vehicle& vehicle, const std::byte* state, const std::byte* output,
+                              const RecordArrays& record);
+
+  const char* instruction_set;
+  int lanes;
+  StepPack<Wagon> step_wagons;
+  StepPack<LtdVehicle> step_ltd;
+  RecordPack<Wagon> record_wagons;
+  RecordPack<LtdVehicle> record_ltd;
+  /// Forces of `count` connections of one type, a multiple of `lanes`.
+  void (*connection_forces)(const Connection& type, double prediction_s, double time_s, int count,
+                            const ConnectionArrays& arrays);
+  /// Pressures of `count` vehicles at a time, a multiple of `lanes`.
+  void (*cylinder_pressures)(const BrakePhases& phases, double time_s, int count, double* pressure_pa);
+};
+
+/// The kernels that were built and that this machine can run, fastest first. All give the same bits.
+const std::vector<LaneKernels>& AllLaneKernels();
+
+/// The fastest.
+inline const LaneKernels& BestLaneKernels() { return AllLaneKernels().front(); }
+
+/// Arrays that kernels step through have a multiple of this many numbers.
+inline constexpr int kMostLanes = 8;
+
+/// The next multiple of kMostLanes.
+inline constexpr int PaddedToLanes(int count) { return (count + kMostLanes - 1) / kMostLanes * kMostLanes; }
+
+}  // namespace train_dynamics

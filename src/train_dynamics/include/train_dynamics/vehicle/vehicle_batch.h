@@ -1,0 +1,60 @@
+#pragma once
+
+#include <boost/align/aligned_allocator.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "train_dynamics/vehicle/lane_kernels.h"
+
+namespace train_dynamics {
+
+/// Vehicles of one type in packs of lanes. The last pack is filled up with copies of its first vehicle, which
+/// do what that does; nobody looks at them.
+template <class Vehicle>
+class VehicleBatch {
+ public:
+  using State = typename Vehicle::template State<double>;
+  using Output = typename Vehicle::template Output<double>;
+
+  VehicleBatch(const Vehicle& vehicle, const LaneKernels& kernels, const std::vector<State>& states);
+
+  int size() const { return size_; }
+  const Vehicle& vehicle() const { return vehicle_; }
+
+  /// Advances all vehicles by `steps` steps. @param arrays  of the first vehicle; those of the others follow
+  /// @param with_output  keep what the last step shows
+  /// @return whether all vehicles are sound
+  bool Advance(const TrackParams& track, double dt, int steps, const VehicleArrays& arrays, bool with_output);
+
+  /// What a record holds of every vehicle, after an Advance with output.
+  void Record(const RecordArrays& record) const;
+
+  State StateOf(int i) const;
+  /// What vehicle i showed of the last step with output; NaN before.
+  Output OutputOf(int i) const;
+  void SetState(int i, const State& state);
+  /// Digest of the positions and velocities of every vehicle.
+  void Digests(std::uint64_t* digest) const;
+
+ private:
+  using Bytes = std::vector<std::byte, boost::alignment::aligned_allocator<std::byte, 64>>;
+
+  template <class Struct>
+  Struct Unpack(const Bytes& packed, int i) const;
+  template <class Struct>
+  void Pack(const Struct& value, int i, Bytes& packed) const;
+
+  Vehicle vehicle_;
+  LaneKernels kernels_;
+  LaneKernels::StepPack<Vehicle> step_;
+  LaneKernels::RecordPack<Vehicle> record_;
+  int size_;
+  int packs_;
+  Bytes states_, outputs_;
+};
+
+using WagonBatch = VehicleBatch<Wagon>;
+using LtdBatch = VehicleBatch<LtdVehicle>;
+
+}  // namespace train_dynamics
