@@ -6,12 +6,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "ltd_master/rank_caller.h"
+#include "ltd_master/rank_messages.h"
 #include "ltd_master/ros_transport.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/config/writer.h"
@@ -197,8 +202,124 @@ TEST_P(LostRank, LateIsMentionedAndThenGoesOn) {
   EXPECT_FALSE(transport_->timing().was_late);
 }
 
-INSTANTIATE_TEST_SUITE_P(Callers, LostRank, testing::Values(0, kBlockingThreads),
-                         [](const auto& test) { return test.param == 0 ? "Asynchronous" : "Blocking"; });
+std::string CallerName(const testing::TestParamInfo<int>& test) {
+  return test.param == 0 ? "Asynchronous" : "Blocking";
+}
+INSTANTIATE_TEST_SUITE_P(Callers, LostRank, testing::Values(0, kBlockingThreads), CallerName);
+
+/// A train of six ranks, the first three of which are processes of our own.
+class LostAndFound : public testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    for (int rank = 0; rank < kOwn; ++rank) {
+      ranks_[rank].name = "/own/wagon_" + std::to_string(NextRun());
+      StartProcess(rank);
+    }
+    caller_ = GetParam() == 0 ? ltd_master::MakeAsynchronousCaller(ranks_)
+                              : ltd_master::MakeBlockingCaller(ranks_, kVehicles);
+    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, NextRun(),
+                                                           train_dynamics::config::Write(scenario_.params));
+    for (int rank = 0; rank < kVehicles; ++rank) Connect(rank);
+    ltd_master::LateWatch watch = Watch(kSoon);
+    ASSERT_TRUE(caller_->Call(messages_->configure, watch).lost.empty());
+    ASSERT_TRUE(Exchange(0).empty());
+  }
+
+  void StartProcess(int rank) {
+    const std::string& name = ranks_[rank].name;
+    process_[rank] = std::make_unique<WagonProcess>(name.substr(name.rfind('/') + 1));
+  }
+  void Connect(int rank) {
+    const Clock::time_point end =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kSoon));
+    std::string why;
+    do {
+      why = caller_->Connect(rank);
+    } while (!why.empty() && Clock::now() < end);
+    ASSERT_EQ(why, "");
+  }
+  ltd_master::LateWatch Watch(double deadline_s) { return {ranks_, "test", deadline_s, interrupted_}; }
+
+  /// Lets all ranks do an exchange. @return who was lost, and why, in the order of the ranks
+  std::map<int, std::string> Exchange(std::uint64_t exchange, double deadline_s = kSoon) {
+    train_dynamics::ExchangeRequest request;
+    request.exchange = exchange;
+    request.dt_s = scenario_.params.dt_s;
+    request.steps = scenario_.params.StepsPerExchange();
+    request.coupler_force_n.assign(kVehicles + 1, 0.0);
+    request.cylinder_pressure_pa.assign(kVehicles, 0.0);
+    messages_->Pack(request);
+    ltd_master::LateWatch watch = Watch(deadline_s);
+    std::map<int, std::string> lost;
+    for (const ltd_master::LostRank& one : caller_->Call(messages_->step, watch).lost) {
+      EXPECT_TRUE(lost.emplace(one.rank, one.why).second) << "rank " << one.rank << " was lost twice";
+    }
+    for (int rank = 0; rank < kVehicles; ++rank) {
+      if (lost.count(rank) != 0) continue;
+      EXPECT_TRUE(messages_->step[rank].response.ok) << messages_->step[rank].response.message;
+      EXPECT_EQ(messages_->step[rank].response.exchange, exchange);
+    }
+    return lost;
+  }
+
+  static constexpr int kOwn = 3;
+  const LoadedScenario scenario_ = Load();
+  const std::function<bool()> interrupted_ = [] { return false; };
+  std::vector<Rank> ranks_ = RanksIn("/ranks_6", kVehicles);
+  std::array<std::unique_ptr<WagonProcess>, kOwn> process_;
+  std::unique_ptr<ltd_master::RankCaller> caller_;
+  std::unique_ptr<ltd_master::RankMessages> messages_;
+};
+
+TEST_P(LostAndFound, TheOthersReplyAndReplacementsTakeOver) {
+  process_[0]->Signal(SIGKILL);
+  process_[1]->Stop();
+  constexpr double kDeadline = 1.5;
+  const std::map<int, std::string> lost = Exchange(1, kDeadline);
+  ASSERT_EQ(lost.size(), 2u);
+  EXPECT_NE(lost.at(0), "");
+  EXPECT_EQ(lost.at(1), "no reply within 1.5 s");
+
+  // The stopped one wakes up, and replies to nobody.
+  process_[1]->Signal(SIGCONT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(Exchange(2).size(), 2u);  // those who are not connected stay lost
+
+  ltd_master::LateWatch watch = Watch(kSoon);
+  for (const int rank : {0, 1}) {
+    process_[rank].reset();
+    StartProcess(rank);
+    Connect(rank);
+    caller_->CallOne(rank, messages_->configure[rank], watch);
+    ASSERT_TRUE(messages_->configure[rank].response.ok);
+    for (const int exchange : {0, 1, 2}) {
+      messages_->step[rank].request.exchange = exchange;
+      caller_->CallOne(rank, messages_->step[rank], watch);
+      ASSERT_TRUE(messages_->step[rank].response.ok);
+    }
+  }
+  EXPECT_TRUE(Exchange(3).empty());
+  // Nothing has acted on any vehicle, so each one rolls on as its neighbours of the same kind do: the repeated
+  // exchanges have moved the replacements as far as the others.
+  EXPECT_EQ(messages_->step[1].response.head_displacement_m, messages_->step[4].response.head_displacement_m);
+}
+
+TEST_P(LostAndFound, OneThatIsCalledAloneMayBeLostAlone) {
+  process_[2]->Stop();
+  ltd_master::LateWatch watch = Watch(0.5);
+  messages_->step[2].request.exchange = 1;
+  try {
+    caller_->CallOne(2, messages_->step[2], watch);
+    FAIL() << "a process that stands still has replied";
+  } catch (const RankFailure& e) {
+    EXPECT_EQ(e.what(), ranks_[2].name + " (vehicle 3), test: no reply within 0.5 s");
+  }
+  EXPECT_EQ(Exchange(1).size(), 1u);
+  caller_->Disconnect(3);
+  EXPECT_EQ(Exchange(2).size(), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Callers, LostAndFound, testing::Values(0, kBlockingThreads), CallerName);
 
 TEST(Wire, CarriesTheBitsOfTheTrainInOneProcess) {
   for (const char* model : {"2d", "ltd"}) {

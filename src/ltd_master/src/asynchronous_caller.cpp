@@ -1,3 +1,4 @@
+#include <poll.h>
 #include <ros/service_manager.h>
 #include <ros/service_traits.h>
 #include <sys/epoll.h>
@@ -48,34 +49,49 @@ class FanOut {
     return "";
   }
 
+  void Disconnect(int rank) { links_[rank].reset(); }
+
   template <class Service>
-  int Call(std::vector<Service>& calls, LateWatch& watch) {
+  CallOutcome Call(std::vector<Service>& calls, LateWatch& watch) {
     pending_.assign(calls.size(), true);
-    int rank = 0, last = 0;
-    try {
-      for (; rank < static_cast<int>(calls.size()); ++rank) {
+    outcome_ = {};
+    left_ = calls.size();
+    for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) {
+      Attempt(rank, [&] {
+        if (links_[rank] == nullptr) throw LinkError("is not connected");
         if (!links_[rank]->Send(calls[rank].request)) Watch(rank, EPOLL_CTL_MOD, EPOLLIN | EPOLLOUT);
-      }
-      std::array<epoll_event, 64> events;
-      std::size_t left = calls.size();
-      for (int wakes = 1; left > 0; ++wakes) {
-        const int count = epoll_wait(epoll_, events.data(), events.size(), kGlanceMs);
-        if (count == 0 || wakes % kWakesPerLook == 0) watch.Look(pending_);
-        for (int i = 0; i < count; ++i) {
-          rank = static_cast<int>(events[i].data.u32);
-          if (!Serve(rank, events[i].events, calls[rank].response)) continue;
-          --left;
-          last = rank;
-        }
-      }
-    } catch (const WaitInterrupted&) {
-      throw;
-    } catch (const RankFailure&) {
-      throw;
-    } catch (const std::exception& e) {  // of a link, or of a reply that cannot be unpacked
-      watch.GiveUp(rank, e.what());
+      });
     }
-    return last;
+    std::array<epoll_event, 64> events;
+    for (int wakes = 1; left_ > 0; ++wakes) {
+      const int count = epoll_wait(epoll_, events.data(), events.size(), kGlanceMs);
+      if ((count == 0 || wakes % kWakesPerLook == 0) && !watch.Look(pending_)) {
+        for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) {
+          if (pending_[rank]) Lose(rank, watch.NoReply());
+        }
+        break;
+      }
+      for (int i = 0; i < count; ++i) {
+        const int rank = static_cast<int>(events[i].data.u32);
+        Attempt(rank, [&] { Serve(rank, events[i].events, calls[rank].response); });
+      }
+    }
+    return outcome_;
+  }
+
+  template <class Service>
+  void CallOne(int rank, Service& call, LateWatch& watch) {
+    if (links_[rank] == nullptr) throw LinkError("is not connected");
+    ServiceLink& link = *links_[rank];
+    std::vector<bool> pending(links_.size(), false);
+    pending[rank] = true;
+    bool is_sent = link.Send(call.request);
+    while (!is_sent || !link.Receive(call.response)) {
+      if (!link.Wait(is_sent ? POLLIN : POLLOUT, LateWatch::kGlance) && !watch.Look(pending)) {
+        throw LinkError(watch.NoReply());
+      }
+      if (!is_sent) is_sent = link.Flush();
+    }
   }
 
  private:
@@ -90,24 +106,44 @@ class FanOut {
     }
   }
 
-  /// Moves bytes as far as they go. @return whether the rank's reply has become complete
-  template <class Response>
-  bool Serve(int rank, std::uint32_t events, Response& response) {
-    ServiceLink& link = *links_[rank];
-    if ((events & EPOLLOUT) != 0 && link.Flush()) Watch(rank, EPOLL_CTL_MOD, EPOLLIN);
-    if ((events & ~static_cast<std::uint32_t>(EPOLLOUT)) == 0) return false;
-    if (!pending_[rank]) {
-      link.ExpectSilence();
-      return false;
+  /// Does something with a rank's link; who fails in it is lost.
+  template <class Action>
+  void Attempt(int rank, Action action) {
+    try {
+      action();
+    } catch (const std::exception& e) {  // of the link, or of a reply that cannot be unpacked
+      Lose(rank, e.what());
     }
-    if (!link.Receive(response)) return false;
-    pending_[rank] = false;
-    return true;
   }
 
-  std::vector<std::unique_ptr<ServiceLink>> links_;  ///< [rank]
-  std::vector<bool> pending_;
+  void Lose(int rank, const std::string& why) {
+    Disconnect(rank);
+    outcome_.lost.push_back({rank, why});
+    if (pending_[rank]) --left_;
+    pending_[rank] = false;
+  }
+
+  /// Moves bytes as far as they go.
+  template <class Response>
+  void Serve(int rank, std::uint32_t events, Response& response) {
+    ServiceLink& link = *links_[rank];
+    if ((events & EPOLLOUT) != 0 && link.Flush()) Watch(rank, EPOLL_CTL_MOD, EPOLLIN);
+    if ((events & ~static_cast<std::uint32_t>(EPOLLOUT)) == 0) return;
+    if (!pending_[rank]) {
+      link.ExpectSilence();
+    } else if (link.Receive(response)) {
+      pending_[rank] = false;
+      --left_;
+      outcome_.last_rank = rank;
+    }
+  }
+
+  std::vector<std::unique_ptr<ServiceLink>> links_;  ///< [rank] null: not connected
   const int epoll_;
+  // Of the present call:
+  std::vector<bool> pending_;  ///< [rank] whether it has yet to reply
+  std::size_t left_ = 0;       ///< how many have
+  CallOutcome outcome_;
 };
 
 class AsynchronousCaller : public RankCaller {
@@ -125,14 +161,45 @@ class AsynchronousCaller : public RankCaller {
     }
   }
 
-  int Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) override {
-    return configure_.Call(calls, watch);
+  void Disconnect(int rank) override {
+    configure_.Disconnect(rank);
+    step_.Disconnect(rank);
   }
-  int Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) override {
-    return step_.Call(calls, watch);
+
+  CallOutcome Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) override {
+    return CallAll(configure_, calls, watch);
+  }
+  CallOutcome Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) override {
+    return CallAll(step_, calls, watch);
+  }
+  void CallOne(int rank, train_brake_msgs::Configure& call, LateWatch& watch) override {
+    CallOne(configure_, rank, call, watch);
+  }
+  void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) override {
+    CallOne(step_, rank, call, watch);
   }
 
  private:
+  template <class Service>
+  CallOutcome CallAll(FanOut& links, std::vector<Service>& calls, LateWatch& watch) {
+    const CallOutcome outcome = links.Call(calls, watch);
+    for (const LostRank& lost : outcome.lost) Disconnect(lost.rank);
+    return outcome;
+  }
+
+  template <class Service>
+  void CallOne(FanOut& links, int rank, Service& call, LateWatch& watch) {
+    try {
+      links.CallOne(rank, call, watch);
+    } catch (const WaitInterrupted&) {
+      Disconnect(rank);
+      throw;
+    } catch (const std::exception& e) {
+      Disconnect(rank);
+      throw RankFailure(ranks_[rank], watch.when(), e.what());
+    }
+  }
+
   const std::vector<Rank> ranks_;
   FanOut configure_, step_;
 };

@@ -1,11 +1,14 @@
 #include <ros/node_handle.h>
+#include <ros/service.h>
 #include <ros/service_client.h>
 
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <thread>
 
 #include "ltd_master/rank_caller.h"
@@ -18,7 +21,7 @@ using train_dynamics::Rank;
 class BlockingCaller : public RankCaller {
  public:
   BlockingCaller(const std::vector<Rank>& ranks, int threads)
-      : ranks_(ranks), configure_(ranks.size()), step_(ranks.size()), next_(static_cast<int>(ranks.size())) {
+      : ranks_(ranks), configure_(ranks.size()), step_(ranks.size()) {
     const int size = std::clamp(threads, 1, static_cast<int>(ranks.size()));
     for (int i = 0; i < size; ++i) threads_.emplace_back(&BlockingCaller::Work, this);
   }
@@ -29,9 +32,7 @@ class BlockingCaller : public RankCaller {
       ending_ = true;
     }
     start_.notify_all();
-    // Ends the calls that are still waiting: they know no deadline.
-    for (ros::ServiceClient& client : configure_) client.shutdown();
-    for (ros::ServiceClient& client : step_) client.shutdown();
+    for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank) BreakOff(rank);
     for (std::thread& thread : threads_) thread.join();
   }
 
@@ -41,60 +42,127 @@ class BlockingCaller : public RankCaller {
                               Connect<train_brake_msgs::Step>(name + "/step", step_[rank]);
     return is_connected ? "" : "has not advertised";
   }
-
-  int Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) override {
-    return CallAll([&](int rank) { return configure_[rank].call(calls[rank]); }, watch);
+  void Disconnect(int rank) override {
+    BreakOff(rank);
+    configure_[rank] = step_[rank] = ros::ServiceClient();
   }
-  int Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) override {
-    return CallAll([&](int rank) { return step_[rank].call(calls[rank]); }, watch);
+
+  CallOutcome Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) override {
+    return CallAll([&](int rank) { return Ask(configure_[rank], calls[rank]); }, watch);
+  }
+  CallOutcome Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) override {
+    return CallAll([&](int rank) { return Ask(step_[rank], calls[rank]); }, watch);
+  }
+  void CallOne(int rank, train_brake_msgs::Configure& call, LateWatch& watch) override {
+    CallOne(
+        rank, [&](int /*rank*/) { return Ask(configure_[rank], call); }, watch);
+  }
+  void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) override {
+    CallOne(
+        rank, [&](int /*rank*/) { return Ask(step_[rank], call); }, watch);
   }
 
  private:
+  using RankCall = std::function<bool(int rank)>;
+
   template <class Service>
   bool Connect(const std::string& service, ros::ServiceClient& client) {
-    if (!client.isValid()) client = node_.serviceClient<Service>(service, true);
+    // A process that was killed stays advertised: whether there is one is asked first.
+    if (!client.isValid() && ros::service::exists(service, false)) {
+      client = node_.serviceClient<Service>(service, true);
+    }
     return client.isValid();
   }
 
-  int CallAll(const std::function<bool(int)>& call, LateWatch& watch) {
+  template <class Service>
+  static bool Ask(ros::ServiceClient& client, Service& call) {
+    return client.isValid() && client.call(call);
+  }
+
+  /// Ends a call that is still waiting: it knows no deadline.
+  void BreakOff(int rank) {
+    configure_[rank].shutdown();
+    step_[rank].shutdown();
+  }
+
+  CallOutcome CallAll(const RankCall& call, LateWatch& watch) {
+    std::deque<int> all(ranks_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return CallThese(std::move(all), call, watch);
+  }
+
+  void CallOne(int rank, const RankCall& call, LateWatch& watch) {
+    const CallOutcome outcome = CallThese({rank}, call, watch);
+    if (!outcome.lost.empty()) throw RankFailure(ranks_[rank], watch.when(), outcome.lost.front().why);
+  }
+
+  CallOutcome CallThese(std::deque<int> ranks, const RankCall& call, LateWatch& watch) {
     std::unique_lock<std::mutex> lock(mutex_);
-    call_ = call;
-    pending_.assign(ranks_.size(), true);
-    left_ = ranks_.size();
-    next_ = 0;
+    call_ = &call;
+    outcome_ = {};
+    pending_.assign(ranks_.size(), false);
+    for (const int rank : ranks) pending_[rank] = true;
+    queue_ = std::move(ranks);
+    left_ = queue_.size();
     start_.notify_all();
     const std::chrono::duration<double> glance(LateWatch::kGlance);
-    while (!finish_.wait_for(lock, glance, [this] { return left_ == 0 || failed_ >= 0; })) {
+    while (!finish_.wait_for(lock, glance, [this] { return left_ == 0; })) {
       const std::vector<bool> pending = pending_;
       lock.unlock();
-      watch.Look(pending);
+      bool in_time = false;
+      try {
+        in_time = watch.Look(pending);
+      } catch (const WaitInterrupted&) {
+        lock.lock();
+        BreakOffPending(lock);
+        throw;
+      }
       lock.lock();
+      if (in_time) continue;
+      why_ = watch.NoReply();
+      BreakOffPending(lock);
+      why_ = kFailed;
     }
-    const int failed = failed_;
-    lock.unlock();
-    if (failed >= 0) watch.GiveUp(failed, "the call failed; roscpp logs why, if it knows");
-    return last_;
+    for (const LostRank& lost : outcome_.lost) Disconnect(lost.rank);
+    return outcome_;
+  }
+
+  /// Ends the calls that have not been replied to.
+  void BreakOffPending(std::unique_lock<std::mutex>& lock) {
+    for (const int rank : queue_) Finish(rank, false);
+    queue_.clear();
+    for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank) {
+      if (pending_[rank]) BreakOff(rank);
+    }
+    finish_.wait(lock, [this] { return left_ == 0; });
+  }
+
+  void Finish(int rank, bool replied) {
+    pending_[rank] = false;
+    --left_;
+    if (replied) {
+      outcome_.last_rank = rank;
+    } else {
+      outcome_.lost.push_back({rank, why_});
+    }
   }
 
   void Work() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
-      start_.wait(lock, [this] { return ending_ || next_ < static_cast<int>(ranks_.size()); });
+      start_.wait(lock, [this] { return ending_ || !queue_.empty(); });
       if (ending_) return;
-      const int rank = next_++;
+      const int rank = queue_.front();
+      queue_.pop_front();
       lock.unlock();
-      const bool done = call_(rank);
+      const bool replied = (*call_)(rank);
       lock.lock();
-      if (done) {
-        pending_[rank] = false;
-        --left_;
-        last_ = rank;
-      } else {
-        failed_ = rank;
-      }
-      if (left_ == 0 || failed_ >= 0) finish_.notify_one();
+      Finish(rank, replied);
+      if (left_ == 0) finish_.notify_one();
     }
   }
+
+  static constexpr const char* kFailed = "the call failed; roscpp logs why, if it knows";
 
   ros::NodeHandle node_;
   const std::vector<Rank> ranks_;
@@ -102,12 +170,12 @@ class BlockingCaller : public RankCaller {
 
   std::mutex mutex_;  ///< of all below
   std::condition_variable start_, finish_;
-  std::function<bool(int)> call_;  ///< of one rank
-  int next_;                       ///< rank to be called next
-  std::vector<bool> pending_;      ///< [rank]
-  std::size_t left_ = 0;           ///< ranks that have not replied
-  int last_ = 0;                   ///< rank that replied last
-  int failed_ = -1;                ///< rank whose call failed
+  const RankCall* call_ = nullptr;  ///< the present call
+  std::deque<int> queue_;           ///< ranks that it has not begun with
+  std::vector<bool> pending_;       ///< [rank] whether it has yet to reply
+  std::size_t left_ = 0;            ///< how many have
+  std::string why_ = kFailed;       ///< a call that fails does so
+  CallOutcome outcome_;
   bool ending_ = false;
   std::vector<std::thread> threads_;
 };

@@ -54,7 +54,8 @@ RosTransport::~RosTransport() = default;
 void RosTransport::Start(train_dynamics::ExchangeReply& reply) {
   WaitForRanks();
   LateWatch watch(ranks_, kConfiguration, options_.start_timeout_s, options_.interrupted);
-  caller_->Call(messages_->configure, watch);
+  const CallOutcome outcome = caller_->Call(messages_->configure, watch);
+  if (!outcome.lost.empty()) watch.GiveUp(outcome.lost);
   messages_->Unpack(reply);
 }
 
@@ -63,9 +64,11 @@ void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request,
   const Clock::time_point start = Clock::now();
   messages_->Pack(request);
   LateWatch watch(ranks_, ExchangeText(request.exchange), options_.exchange_deadline_s, options_.interrupted);
-  timing_.last_rank = caller_->Call(messages_->step, watch);
+  const CallOutcome outcome = caller_->Call(messages_->step, watch);
+  if (!outcome.lost.empty()) watch.GiveUp(outcome.lost);
   messages_->Unpack(request, reply);
   timing_.wall_s = SecondsSince(start);
+  timing_.last_rank = outcome.last_rank;
   timing_.was_late = watch.was_late();
 }
 

@@ -110,9 +110,12 @@ void ServiceLink::ShakeHands(const std::string& service, const std::string& md5s
 }
 
 void ServiceLink::WaitFor(short events, double timeout_s, const char* what) const {
+  if (!Wait(events, timeout_s)) throw LinkError(std::string("does not ") + what);
+}
+
+bool ServiceLink::Wait(short events, double timeout_s) const {
   pollfd entry{descriptor_, events, 0};
-  const int ready = poll(&entry, 1, static_cast<int>(std::lround(1e3 * timeout_s)));
-  if (ready == 0 || (ready < 0 && errno != EINTR)) throw LinkError(std::string("does not ") + what);
+  return poll(&entry, 1, static_cast<int>(std::lround(1e3 * timeout_s))) > 0;
 }
 
 void ServiceLink::ReadAll(std::uint8_t* data, std::size_t size, double timeout_s) const {

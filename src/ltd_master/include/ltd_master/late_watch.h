@@ -20,6 +20,13 @@ class RankFailure : public std::runtime_error {
   RankFailure(const train_dynamics::Rank& rank, const std::string& when, const std::string& what);
 };
 
+/// A rank that is given up: its connection broke, it replied what cannot be read, or it is late beyond the
+/// deadline.
+struct LostRank {
+  int rank;         ///< index
+  std::string why;  ///< "closed the connection"
+};
+
 /// The end of a wait that somebody asked for. What was waited for has not come.
 class WaitInterrupted : public std::runtime_error {
  public:
@@ -29,7 +36,7 @@ class WaitInterrupted : public std::runtime_error {
 /// The chosen ranks with their vehicles, the first few of them: "/train/wagon_007 (vehicles 7-12), ...".
 std::string NamesOf(const std::vector<train_dynamics::Rank>& ranks, const std::vector<bool>& chosen);
 
-/// Patience with ranks: warns when a wait takes 1, 3 and 10 s, naming those who are late, and ends it at the
+/// Patience with ranks: warns when a wait takes 1, 3 and 10 s, naming those who are late, and knows the
 /// deadline.
 class LateWatch {
  public:
@@ -44,13 +51,16 @@ class LateWatch {
 
   /// Looks at the watch.
   /// @param pending  [rank] whether it is still waited for
-  /// @throws WaitInterrupted, and RankFailure after the deadline
-  void Look(const std::vector<bool>& pending);
+  /// @return whether it is in time; false: the deadline has passed, and those ranks are lost for NoReply()
+  /// @throws WaitInterrupted
+  bool Look(const std::vector<bool>& pending);
 
-  /// A rank has died: gives an interruption, which may have hit that rank first, a second to come in.
+  /// Ranks are lost for good: gives an interruption, which may have hit them first, a second to come in.
   /// @throws WaitInterrupted, RankFailure
-  [[noreturn]] void GiveUp(int rank, const std::string& what) const;
+  [[noreturn]] void GiveUp(const std::vector<LostRank>& lost) const;
 
+  std::string NoReply() const;  ///< "no reply within 30 s"
+  const std::string& when() const { return when_; }
   bool was_late() const { return stage_ > 0; }  ///< whether it has warned
 
  private:

@@ -12,21 +12,36 @@
 
 namespace ltd_master {
 
+/// What came of a call of all ranks.
+struct CallOutcome {
+  int last_rank = 0;           ///< index of the rank that replied last
+  std::vector<LostRank> lost;  ///< those whose responses mean nothing; they are disconnected
+};
+
 /// Calls the same service of all ranks side by side.
+///
+/// A rank that is lost is disconnected for good: whatever it may still send goes nowhere. Connect() then finds
+/// the process that has taken its name since.
 class RankCaller {
  public:
   virtual ~RankCaller() = default;
 
-  /// Tries to connect to a rank's services.
+  /// Tries to connect to a rank's services, unless it is connected.
   /// @return why it cannot be reached yet; empty: it is connected
   /// @throws RankFailure if it can be reached, but speaks otherwise
   virtual std::string Connect(int rank) = 0;
+  virtual void Disconnect(int rank) = 0;
 
-  /// Sends calls[rank].request to every rank and fills calls[rank].response.
-  /// @return the rank that replied last
-  /// @throws WaitInterrupted, RankFailure
-  virtual int Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) = 0;
-  virtual int Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) = 0;
+  /// Sends calls[rank].request to every rank, fills calls[rank].response, and returns when every rank has
+  /// replied or is lost.
+  /// @throws WaitInterrupted
+  virtual CallOutcome Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) = 0;
+  virtual CallOutcome Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) = 0;
+
+  /// Calls one rank alone.
+  /// @throws WaitInterrupted, RankFailure; then the rank is disconnected
+  virtual void CallOne(int rank, train_brake_msgs::Configure& call, LateWatch& watch) = 0;
+  virtual void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) = 0;
 };
 
 /// One thread, which speaks TCPROS with all ranks: requests go out before any reply is waited for.

@@ -66,6 +66,9 @@ class ServiceLink {
     return true;
   }
 
+  /// @return whether the socket can be read or written (POLLIN or POLLOUT) within that time
+  bool Wait(short events, double timeout_s) const;
+
   /// Outside a call nothing comes. @throws LinkError if something does, such as the end of the connection
   void ExpectSilence() const;
 
