@@ -89,7 +89,7 @@ class WagonServices(unittest.TestCase):
 
     def test_wrong_version_and_digest_are_refused_with_both_values(self):
         self.refused(self.configure(self.configure_request(protocol_version=7)),
-                     "the master speaks protocol version 7, this wagon node version 1")
+                     "the master speaks protocol version 7, this wagon node version %d" % ConfigureRequest.PROTOCOL_VERSION)
         self.refused(self.configure(self.configure_request(scenario_digest=1)),
                      "digest 0x0000000000000001, but has 0x%016x" % text_digest(self.scenario))
 
@@ -126,8 +126,8 @@ class WagonServices(unittest.TestCase):
         self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
         self.refused(self.step(self.step_request(1, run_id=99)), "run 99 is not known here")
         # Somebody else, from the command line, while we are connected.
-        arguments = "{protocol_version: 1, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', " \
-                    "scenario_digest: %d}" % text_digest("")
+        arguments = "{protocol_version: %d, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', " \
+                    "scenario_digest: %d}" % (ConfigureRequest.PROTOCOL_VERSION, text_digest(""))
         call = subprocess.run(["rosservice", "call", NODE + "/configure", arguments], stdout=subprocess.PIPE,
                               universal_newlines=True, check=True)
         self.assertIn("ok: False", call.stdout)

@@ -196,7 +196,7 @@ class AsynchronousCaller : public RankCaller {
       throw;
     } catch (const std::exception& e) {
       Disconnect(rank);
-      throw RankFailure(ranks_[rank], watch.when(), e.what());
+      throw RankLost(ranks_[rank], watch.when(), e.what());
     }
   }
 

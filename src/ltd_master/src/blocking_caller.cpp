@@ -93,7 +93,7 @@ class BlockingCaller : public RankCaller {
 
   void CallOne(int rank, const RankCall& call, LateWatch& watch) {
     const CallOutcome outcome = CallThese({rank}, call, watch);
-    if (!outcome.lost.empty()) throw RankFailure(ranks_[rank], watch.when(), outcome.lost.front().why);
+    if (!outcome.lost.empty()) throw RankLost(ranks_[rank], watch.when(), outcome.lost.front().why);
   }
 
   CallOutcome CallThese(std::deque<int> ranks, const RankCall& call, LateWatch& watch) {

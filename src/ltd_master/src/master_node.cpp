@@ -68,6 +68,12 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
   options.start_paused = parameters.param("start_paused", false);
   options.startup_timeout_s = NonNegative(parameters, "startup_timeout_s", 60.0);
   options.exchange_timeout_s = NonNegative(parameters, "exchange_timeout_s", 30.0);
+  const std::string on_lost_node = parameters.param<std::string>("on_lost_node", "recover");
+  if (on_lost_node != "recover" && on_lost_node != "stop") {
+    throw std::invalid_argument("parameter on_lost_node must be recover or stop, got " + on_lost_node);
+  }
+  options.recover = on_lost_node == "recover";
+  options.recovery_timeout_s = NonNegative(parameters, "recovery_timeout_s", 60.0);
   const std::string client = parameters.param<std::string>("client", "fan_out");
   if (client != "fan_out" && client != "blocking") {
     throw std::invalid_argument("parameter client must be fan_out or blocking, got " + client);
@@ -115,6 +121,10 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   transport.start_timeout_s = options_.startup_timeout_s;
   transport.exchange_deadline_s = options_.exchange_timeout_s;
   transport.blocking_threads = options_.blocking_threads;
+  transport.recover = options_.recover;
+  transport.recovery_timeout_s = options_.recovery_timeout_s;
+  constexpr double kSnapshotInterval = 1.0;  // [s] of simulated time
+  transport.snapshot_exchanges = std::max(1L, std::lround(kSnapshotInterval / scenario.exchange_interval_s));
   transport.interrupted = Ending;
   auto ranks =
       std::make_unique<RosTransport>(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks),
@@ -271,6 +281,7 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
     add("ranks", std::to_string(last_count_.size()));
     add("slowest_rank", ranks_->ranks()[slowest].name);
     add("deadline_warnings", std::to_string(late_exchanges_));
+    add("recoveries", std::to_string(ranks_->recoveries()));
   }
   array.status.push_back(status);
   diagnostics_publisher_.publish(array);

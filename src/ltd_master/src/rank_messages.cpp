@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ltd_master/late_watch.h"
+#include "train_dynamics/train/snapshot.h"
 
 namespace ltd_master {
 namespace {
@@ -71,6 +72,27 @@ class Unpacker {
     }
   }
 
+  /// @param last  the train's last rank
+  void Snapshot(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes, const Rank& last,
+                ExchangeReply& reply) const {
+    const auto first = static_cast<std::uint64_t>(rank_.first),
+               count = static_cast<std::uint64_t>(rank_.count);
+    train_dynamics::BlockSnapshot part;
+    try {
+      part = train_dynamics::DecodeBlockSnapshot(bytes);
+    } catch (const train_dynamics::SnapshotError& e) {
+      Fail(fmt::format("replied a snapshot that {}", e.what()));
+    }
+    const std::size_t numbers = part.state.size() / count;
+    if (part.exchange != exchange || part.first != first || part.count != count || numbers == 0 ||
+        numbers * count != part.state.size()) {
+      Fail("replied a snapshot of something else");
+    }
+    reply.snapshot.resize((last.first + last.count) * numbers);
+    std::copy(part.state.begin(), part.state.end(),
+              reply.snapshot.begin() + static_cast<long>(first * numbers));
+  }
+
   [[noreturn]] void Fail(const std::string& what) const { throw RankFailure(rank_, when_, what); }
 
  private:
@@ -104,6 +126,28 @@ RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
   }
 }
 
+void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<double>& snapshot) {
+  const Rank& last = ranks_.back();
+  const std::size_t vehicles = last.first + last.count, numbers = snapshot.size() / vehicles;
+  if (numbers * vehicles != snapshot.size()) {
+    throw train_dynamics::SnapshotError(
+        fmt::format("has {} numbers, which is not a multiple of {} vehicles", snapshot.size(), vehicles));
+  }
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    train_brake_msgs::ConfigureRequest& request = configure[i].request;
+    request.exchange = exchange;
+    request.snapshot.clear();
+    if (snapshot.empty()) continue;
+    train_dynamics::BlockSnapshot part;
+    part.exchange = exchange;
+    part.first = static_cast<std::uint64_t>(ranks_[i].first);
+    part.count = static_cast<std::uint64_t>(ranks_[i].count);
+    const auto begin = snapshot.begin() + static_cast<long>(part.first * numbers);
+    part.state.assign(begin, begin + static_cast<long>(part.count * numbers));
+    request.snapshot = Encode(part);
+  }
+}
+
 void RankMessages::Unpack(ExchangeReply& reply) const {
   const std::string when = kConfiguration;
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
@@ -118,18 +162,20 @@ void RankMessages::Unpack(ExchangeReply& reply) const {
 }
 
 void RankMessages::Pack(const ExchangeRequest& whole) {
-  for (std::size_t i = 0; i < ranks_.size(); ++i) {
-    train_brake_msgs::StepRequest& request = step[i].request;
-    const auto force = whole.coupler_force_n.begin() + ranks_[i].first;
-    const auto pressure = whole.cylinder_pressure_pa.begin() + ranks_[i].first;
-    request.exchange = whole.exchange;
-    request.dt_s = whole.dt_s;
-    request.steps = static_cast<std::uint32_t>(whole.steps);
-    request.record = whole.record;
-    request.ledger = whole.ledger;
-    request.coupler_force_n.assign(force, force + ranks_[i].count + 1);
-    request.cylinder_pressure_pa.assign(pressure, pressure + ranks_[i].count);
-  }
+  for (std::size_t i = 0; i < ranks_.size(); ++i) Pack(whole, static_cast<int>(i), step[i].request);
+}
+
+void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs::StepRequest& part) const {
+  const auto force = whole.coupler_force_n.begin() + ranks_[rank].first;
+  const auto pressure = whole.cylinder_pressure_pa.begin() + ranks_[rank].first;
+  part.exchange = whole.exchange;
+  part.dt_s = whole.dt_s;
+  part.steps = static_cast<std::uint32_t>(whole.steps);
+  part.record = whole.record;
+  part.ledger = whole.ledger;
+  part.snapshot = whole.snapshot;
+  part.coupler_force_n.assign(force, force + ranks_[rank].count + 1);
+  part.cylinder_pressure_pa.assign(pressure, pressure + ranks_[rank].count);
 }
 
 void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
@@ -150,6 +196,7 @@ void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) co
     unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
     if (whole.record) unpacker.Record(response.record, reply);
     if (whole.ledger) unpacker.Energies(response.record, reply);
+    if (whole.snapshot) unpacker.Snapshot(whole.exchange + 1, response.snapshot, ranks_.back(), reply);
   }
 }
 

@@ -16,15 +16,13 @@
 namespace ltd_master {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kSecondsPerReport = 5.0;  // on who has not come up yet
 constexpr std::chrono::milliseconds kRetry(100);
 constexpr rlim_t kDescriptorsPerRank = 2;
 constexpr rlim_t kOtherDescriptors = 256;  // of roscpp, bag, logs
 
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Lets this process open enough sockets, as far as it may.
@@ -51,25 +49,118 @@ RosTransport::RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_
 
 RosTransport::~RosTransport() = default;
 
-void RosTransport::Start(train_dynamics::ExchangeReply& reply) {
+void RosTransport::Start(train_dynamics::ExchangeReply& reply) { Resume(0, {}, reply); }
+
+void RosTransport::Resume(std::uint64_t exchange, const std::vector<double>& snapshot,
+                          train_dynamics::ExchangeReply& reply) {
+  messages_->BeginAt(exchange, snapshot);
+  std::vector<RecoveryLog::Snapshot> snapshots;
+  for (const train_brake_msgs::Configure& call : messages_->configure) {
+    snapshots.push_back(call.request.snapshot);
+  }
+  log_.Begin(exchange, std::move(snapshots));
   WaitForRanks();
   LateWatch watch(ranks_, kConfiguration, options_.start_timeout_s, options_.interrupted);
   const CallOutcome outcome = caller_->Call(messages_->configure, watch);
-  if (!outcome.lost.empty()) watch.GiveUp(outcome.lost);
+  Recover(outcome.lost, watch, [this](int rank) { Reconfigure(rank); });
   messages_->Unpack(reply);
 }
 
 void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request,
                             train_dynamics::ExchangeReply& reply) {
   const Clock::time_point start = Clock::now();
-  messages_->Pack(request);
+  request_ = request;
+  if (options_.recover && (request.exchange + 1) % options_.snapshot_exchanges == 0) request_.snapshot = true;
+  messages_->Pack(request_);
   LateWatch watch(ranks_, ExchangeText(request.exchange), options_.exchange_deadline_s, options_.interrupted);
   const CallOutcome outcome = caller_->Call(messages_->step, watch);
-  if (!outcome.lost.empty()) watch.GiveUp(outcome.lost);
-  messages_->Unpack(request, reply);
+  Recover(outcome.lost, watch, [this](int rank) {
+    Reconfigure(rank);
+    Replay(rank);
+  });
+  messages_->Unpack(request_, reply);
+  KeepForRecovery();
   timing_.wall_s = SecondsSince(start);
   timing_.last_rank = outcome.last_rank;
   timing_.was_late = watch.was_late();
+}
+
+void RosTransport::KeepForRecovery() {
+  if (!options_.recover) return;
+  if (!request_.snapshot) {
+    log_.Add(request_);
+    return;
+  }
+  std::vector<RecoveryLog::Snapshot> snapshots;
+  for (const train_brake_msgs::Step& call : messages_->step) snapshots.push_back(call.response.snapshot);
+  log_.Begin(request_.exchange + 1, std::move(snapshots));
+}
+
+template <class CatchUp>
+void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& watch, CatchUp catch_up) {
+  if (lost.empty()) return;
+  if (!options_.recover) watch.GiveUp(lost);
+  for (const LostRank& one : lost) {
+    const RankFailure what(ranks_[one.rank], watch.when(), one.why);
+    ROS_WARN("%s. The train waits until a node of that name is there again.", what.what());
+  }
+  const Clock::time_point start = Clock::now();
+  for (LostRank one : lost) {
+    for (bool is_back = false; !is_back;) {
+      WaitForRank(one, watch.when(), start);
+      try {
+        catch_up(one.rank);
+        is_back = true;
+      } catch (const RankLost& e) {
+        one.why = e.what();
+        ROS_WARN("%s: lost again", e.what());
+      }
+    }
+    ++recoveries_;
+    ROS_WARN("%s (%s) is back after %.1f s, with %lu exchanges replayed", ranks_[one.rank].name.c_str(),
+             VehiclesText(ranks_[one.rank]).c_str(), SecondsSince(start), log_.size());
+  }
+}
+
+void RosTransport::WaitForRank(const LostRank& lost, const std::string& when, Clock::time_point start) {
+  for (std::string why_not; !(why_not = caller_->Connect(lost.rank)).empty();) {
+    if (options_.interrupted()) throw WaitInterrupted();
+    if (options_.recovery_timeout_s > 0.0 && SecondsSince(start) > options_.recovery_timeout_s) {
+      throw RankFailure(ranks_[lost.rank], when,
+                        fmt::format("{}; no node has taken its place within {:g} s: it {}", lost.why,
+                                    options_.recovery_timeout_s, why_not));
+    }
+    std::this_thread::sleep_for(kRetry);
+  }
+}
+
+void RosTransport::Reconfigure(int rank) {
+  train_brake_msgs::Configure& call = messages_->configure[rank];
+  call.request.exchange = log_.exchange();
+  call.request.snapshot = log_.snapshot(rank);
+  call.request.again = true;
+  LateWatch watch(ranks_, kConfiguration, options_.start_timeout_s, options_.interrupted);
+  caller_->CallOne(rank, call, watch);
+  if (!call.response.ok) throw RankFailure(ranks_[rank], kConfiguration, call.response.message);
+}
+
+void RosTransport::Replay(int rank) {
+  train_dynamics::ExchangeRequest request = request_;
+  train_brake_msgs::Step past;
+  past.request.run_id = messages_->step[rank].request.run_id;
+  for (std::uint64_t i = 0; i < log_.size(); ++i) {
+    log_.Get(i, request);
+    messages_->Pack(request, rank, past.request);
+    StepOne(rank, past);
+  }
+  StepOne(rank, messages_->step[rank]);
+}
+
+void RosTransport::StepOne(int rank, train_brake_msgs::Step& call) {
+  LateWatch watch(ranks_, ExchangeText(call.request.exchange), options_.exchange_deadline_s,
+                  options_.interrupted);
+  caller_->CallOne(rank, call, watch);
+  if (!call.response.ok) throw RankFailure(ranks_[rank], watch.when(), call.response.message);
 }
 
 void RosTransport::WaitForRanks() {

@@ -228,7 +228,7 @@ class TrainSimTest(unittest.TestCase):
         self.run_ok(str(CONFIG / "scenarios" / "single_wagon_stop.yaml"), "--model", "ltd", "--out", self.out)
         with rosbag.Bag(str(self.out / "train.bag")) as bag:
             states = [m for _, m, _ in bag.read_messages("/train/state")]
-        self.assertGreater(max(s.shoe_force_n[0] for s in states), 5e4)
+        self.assertGreater(max(s.shoe_force_n[0] for s in states[1:]), 5e4)
         self.assertEqual(0.0, states[-1].shoe_force_n[0])
 
     def test_stop_is_that_of_the_train_not_of_its_rocking(self):

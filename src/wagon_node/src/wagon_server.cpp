@@ -10,6 +10,7 @@
 
 #include "train_dynamics/config/reader.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/train/threaded_block.h"
 
 namespace wagon_node {
@@ -77,8 +78,11 @@ struct WagonServer::Run {
         state(count, DetailedVehicles(params, rank)) {}
 
   bool IsRepeated(const StepRequest& request) const {
-    return next_exchange > 0 && request.exchange == next_exchange - 1;
+    return has_replied && request.exchange == next_exchange - 1;
   }
+  /// Brings the vehicles to a snapshot. @throws SnapshotError
+  void Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes);
+  std::vector<std::uint8_t> Snapshot() const;
   /// The state as a record, with the loads that led to it.
   void Fill(bool with_energy, RankRecord& record) const;
 
@@ -90,8 +94,35 @@ struct WagonServer::Run {
   train_dynamics::ExchangeRequest loads;
   train_dynamics::ExchangeReply state;
   std::uint64_t next_exchange = 0;
+  bool has_replied = false;  ///< to a Step
   StepResponse last_reply;
 };
+
+void WagonServer::Run::Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes) {
+  using train_dynamics::SnapshotError;
+  const train_dynamics::BlockSnapshot snapshot = train_dynamics::DecodeBlockSnapshot(bytes);
+  const auto first = static_cast<std::uint64_t>(rank.first), count = static_cast<std::uint64_t>(rank.count);
+  if (snapshot.first != first || snapshot.count != count) {
+    throw SnapshotError("is of " + Text(snapshot.count) + " vehicle(s) from " + Text(snapshot.first + 1) +
+                        " on, not of " + train_dynamics::VehiclesText(rank));
+  }
+  if (snapshot.exchange != exchange) {
+    throw SnapshotError("is of exchange " + Text(snapshot.exchange) + ", not of exchange " + Text(exchange));
+  }
+  train_dynamics::CheckSnapshotSize(snapshot.state, vehicles, rank.count);
+  vehicles.Restore(snapshot.state.data());
+  next_exchange = exchange;
+}
+
+std::vector<std::uint8_t> WagonServer::Run::Snapshot() const {
+  train_dynamics::BlockSnapshot snapshot;
+  snapshot.exchange = next_exchange;
+  snapshot.first = static_cast<std::uint64_t>(rank.first);
+  snapshot.count = static_cast<std::uint64_t>(rank.count);
+  snapshot.state.resize(snapshot.count * vehicles.NumbersPerVehicle());
+  vehicles.Save(snapshot.state.data());
+  return train_dynamics::Encode(snapshot);
+}
 
 void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
   record.position_m = state.position_m;
@@ -108,7 +139,7 @@ void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
     message.header.stamp.fromSec(static_cast<double>(next_exchange) * scenario.exchange_interval_s);
     message.exchange = next_exchange;
     message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
-    if (next_exchange == 0) continue;  // nothing has acted on the vehicle yet
+    if (!has_replied) continue;  // nothing has acted on the vehicle yet
     const int at = detail.vehicle - rank.first;
     using Load = decltype(message.cylinder_pressure_pa);
     message.front_coupler_force_n = static_cast<Load>(loads.coupler_force_n[at]);
@@ -146,6 +177,8 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
     response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) +
                        ", scenario " + run->scenario.name + ", run " + Text(run->id);
     run_ = std::move(run);
+  } catch (const train_dynamics::SnapshotError& e) {
+    response.message = std::string("the snapshot ") + e.what();
   } catch (const std::exception& e) {  // a refusal, or parameters that a vehicle does not take
     response.message = e.what();
   }
@@ -163,7 +196,7 @@ std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& req
                   Hex(digest) + " as it arrived");
   }
   if (request.run_id == 0) throw Refusal("run_id is 0, which stands for no run");
-  if (run_ && request.run_id == run_->id && run_->next_exchange > 0) {
+  if (run_ && request.run_id == run_->id && run_->next_exchange > 0 && !request.again) {
     throw Refusal("run " + Text(run_->id) + " is configured already, and exchange " +
                   Text(run_->next_exchange) + " is next");
   }
@@ -179,8 +212,14 @@ std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& req
     throw Refusal("first_vehicle " + Text(first) + " and vehicle_count " + Text(count) +
                   " are not in a train of " + Text(vehicles) + " vehicles");
   }
-  return std::make_unique<Run>(request.run_id, scenario, consist, static_cast<int>(first - 1),
-                               static_cast<int>(count), threads_);
+  auto run = std::make_unique<Run>(request.run_id, scenario, consist, static_cast<int>(first - 1),
+                                   static_cast<int>(count), threads_);
+  if (!request.snapshot.empty()) {
+    run->Restore(request.exchange, request.snapshot);
+  } else if (request.exchange != 0) {
+    throw Refusal("exchange " + Text(request.exchange) + " cannot be begun without a snapshot");
+  }
+  return run;
 }
 
 const StepResponse& WagonServer::Step(const StepRequest& request) {
@@ -204,6 +243,7 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   run.loads.cylinder_pressure_pa = request.cylinder_pressure_pa;
   const bool sound = run.vehicles.Advance(run.loads, 0, run.state);
   ++run.next_exchange;
+  run.has_replied = true;
 
   reply.ok = true;
   reply.exchange = request.exchange;
@@ -215,6 +255,8 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   reply.fault = fault.what;
   reply.record = RankRecord();
   if (request.record) run.Fill(request.ledger, reply.record);
+  reply.snapshot.clear();
+  if (request.snapshot) reply.snapshot = run.Snapshot();
   return reply;
 }
 

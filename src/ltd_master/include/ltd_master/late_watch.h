@@ -20,6 +20,12 @@ class RankFailure : public std::runtime_error {
   RankFailure(const train_dynamics::Rank& rank, const std::string& when, const std::string& what);
 };
 
+/// The connection to a rank broke, or it is late beyond the deadline: another process may take its place.
+class RankLost : public RankFailure {
+ public:
+  using RankFailure::RankFailure;
+};
+
 /// A rank that is given up: its connection broke, it replied what cannot be read, or it is late beyond the
 /// deadline.
 struct LostRank {

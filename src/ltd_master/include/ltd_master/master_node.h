@@ -33,6 +33,8 @@ struct MasterOptions {
   bool start_paused = false;
   double startup_timeout_s = 60.0;
   double exchange_timeout_s = 30.0;
+  bool recover = true;  ///< bring lost wagon nodes back
+  double recovery_timeout_s = 60.0;
   int blocking_threads = 0;  ///< 0 = asynchronous fan-out
   std::string exit_status_file;
 

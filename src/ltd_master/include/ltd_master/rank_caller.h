@@ -39,7 +39,7 @@ class RankCaller {
   virtual CallOutcome Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) = 0;
 
   /// Calls one rank alone.
-  /// @throws WaitInterrupted, RankFailure; then the rank is disconnected
+  /// @throws WaitInterrupted, RankLost; then the rank is disconnected
   virtual void CallOne(int rank, train_brake_msgs::Configure& call, LateWatch& watch) = 0;
   virtual void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) = 0;
 };

@@ -26,8 +26,15 @@ class RankMessages {
   std::vector<train_brake_msgs::Configure> configure;  ///< [rank]
   std::vector<train_brake_msgs::Step> step;            ///< [rank]
 
+  /// Where `configure` begins. @param snapshot  [vehicle][number]; empty: time 0
+  /// @throws SnapshotError if it is not one of so many vehicles
+  void BeginAt(std::uint64_t exchange, const std::vector<double>& snapshot);
   void Unpack(train_dynamics::ExchangeReply& reply) const;  ///< the replies of `configure`
+
   void Pack(const train_dynamics::ExchangeRequest& request);
+  /// One rank's part of a request.
+  void Pack(const train_dynamics::ExchangeRequest& request, int rank,
+            train_brake_msgs::StepRequest& part) const;
   void Unpack(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) const;
 
  private:

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <train_brake_msgs/Step.h>
+
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -7,6 +10,7 @@
 #include <vector>
 
 #include "ltd_master/late_watch.h"
+#include "ltd_master/recovery_log.h"
 #include "train_dynamics/train/lockstep.h"
 #include "train_dynamics/train/ranks.h"
 
@@ -16,9 +20,12 @@ class RankCaller;
 class RankMessages;
 
 struct RosTransportOptions {
-  double start_timeout_s = 60.0;      ///< for all ranks to come up, and to be configured; 0: for ever
-  double exchange_deadline_s = 30.0;  ///< for all replies of an exchange; 0: for ever
-  int blocking_threads = 0;           ///< 0: asynchronous; else see MakeBlockingCaller
+  double start_timeout_s = 60.0;            ///< for all ranks to come up, and to be configured; 0: for ever
+  double exchange_deadline_s = 30.0;        ///< for all replies of an exchange; 0: for ever
+  int blocking_threads = 0;                 ///< 0: asynchronous; else see MakeBlockingCaller
+  bool recover = true;                      ///< bring lost ranks back; false: the run ends with them
+  double recovery_timeout_s = 60.0;         ///< for a lost rank to come back; 0: for ever
+  std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
 };
 
@@ -35,8 +42,15 @@ struct ExchangeTiming {
 ///           configures all of them side by side.
 /// Exchange  sends every rank its request before it waits for any, and returns when all have replied.
 ///
-/// Whoever is late in either is named after 1, 3 and 10 s; at the deadline the wait ends. Both throw
-/// RankFailure and WaitInterrupted; afterwards the transport is of no more use.
+/// Whoever is late in either is named after 1, 3 and 10 s, and lost at the deadline. A rank is lost, too, when
+/// its connection breaks or its reply cannot be read. A lost rank is brought back, while the others wait:
+///
+///   1. wait until a node of its name answers: respawned, started by hand anywhere, or the same one, awake again
+///   2. Configure it with the last snapshot of its vehicles
+///   3. Step it again through the exchanges since: the same bits, because a rank's motion depends on nothing else
+///
+/// Both throw RankFailure (no recovery wanted, or in vain; a refusal; a reply that makes no sense) and
+/// WaitInterrupted; afterwards the transport is of no more use.
 ///
 /// The connections last as long as the transport. Their end tells the wagon nodes that the run is over.
 class RosTransport : public train_dynamics::Transport {
@@ -49,18 +63,34 @@ class RosTransport : public train_dynamics::Transport {
   ~RosTransport() override;
 
   void Start(train_dynamics::ExchangeReply& reply) override;
+  void Resume(std::uint64_t exchange, const std::vector<double>& snapshot,
+              train_dynamics::ExchangeReply& reply) override;
   void Exchange(const train_dynamics::ExchangeRequest& request,
                 train_dynamics::ExchangeReply& reply) override;
 
   const ExchangeTiming& timing() const { return timing_; }
+  unsigned recoveries() const { return recoveries_; }                        ///< of lost ranks, so far
   const std::vector<train_dynamics::Rank>& ranks() const { return ranks_; }  ///< with resolved names
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void WaitForRanks();
+  /// Brings back those that were lost in a call, until `catch_up(rank)` has gone through for each.
+  template <class CatchUp>
+  void Recover(const std::vector<LostRank>& lost, const LateWatch& watch, CatchUp catch_up);
+  void WaitForRank(const LostRank& lost, const std::string& when, Clock::time_point start);
+  void Reconfigure(int rank);
+  void Replay(int rank);
+  void StepOne(int rank, train_brake_msgs::Step& call);
+  void KeepForRecovery();
 
   std::vector<train_dynamics::Rank> ranks_;
   RosTransportOptions options_;
   std::unique_ptr<RankMessages> messages_;
+  RecoveryLog log_;
+  train_dynamics::ExchangeRequest request_;  ///< of the present exchange
+  unsigned recoveries_ = 0;
   std::unique_ptr<RankCaller> caller_;
   ExchangeTiming timing_;
 };

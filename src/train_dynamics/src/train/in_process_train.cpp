@@ -4,8 +4,18 @@ namespace train_dynamics {
 
 void InProcessTransport::Start(ExchangeReply& reply) { vehicles_.Report(0, true, reply); }
 
+void InProcessTransport::Resume(std::uint64_t /*exchange*/, const std::vector<double>& snapshot,
+                                ExchangeReply& reply) {
+  CheckSnapshotSize(snapshot, vehicles_, count_);
+  vehicles_.Restore(snapshot.data());
+  vehicles_.Report(0, true, reply);
+}
+
 void InProcessTransport::Exchange(const ExchangeRequest& request, ExchangeReply& reply) {
   if (!vehicles_.Advance(request, 0, reply)) reply.fault = vehicles_.FindFault();
+  if (!request.snapshot) return;
+  reply.snapshot.resize(static_cast<std::size_t>(count_) * vehicles_.NumbersPerVehicle());
+  vehicles_.Save(reply.snapshot.data());
 }
 
 }  // namespace train_dynamics

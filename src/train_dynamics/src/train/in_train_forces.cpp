@@ -1,5 +1,6 @@
 #include "train_dynamics/train/in_train_forces.h"
 
+#include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/lane_kernels.h"
 
 namespace train_dynamics {
@@ -90,6 +91,35 @@ void InTrainForces::AddMemoryTo(Digest& digest) const {
     if (!remembers) continue;
     digest.Add(set.stick_m[place.at]);
     digest.Add(set.stick_n[place.at]);
+  }
+}
+
+template <class Self, class Function>
+void InTrainForces::ForEachMemory(Self& self, Function& function) {
+  for (std::size_t c = 0; c < self.places_.size(); ++c) {
+    auto& set = self.sets_[self.places_[c].set];
+    const int at = self.places_[c].at;
+    function(self.start_extension_m_[c]);
+    function(self.extension_m_[c]);
+    for (auto* array : {&set.stick_m, &set.stick_n, &set.dissipated_j, &set.tension_n, &set.tension_time_s,
+                        &set.compression_n, &set.compression_time_s}) {
+      function((*array)[at]);
+    }
+  }
+}
+
+std::vector<double> InTrainForces::Memory() const {
+  MemoryWriter writer;
+  ForEachMemory(*this, writer);
+  return writer.Take();
+}
+
+void InTrainForces::SetMemory(const std::vector<double>& memory) {
+  MemoryReader reader(memory);
+  ForEachMemory(*this, reader);
+  reader.End();
+  for (Set& set : sets_) {
+    for (std::size_t i = 0; i < set.place.size(); ++i) set.extension_m[i] = extension_m_[set.place[i]];
   }
 }
 

@@ -60,18 +60,37 @@ void RunSummary::Observe(const TrainRecord& record) {
   tail_speed_mps_ = speed.back();
   mean_distance_m_ = record.mean_position_m - start_position_m_;
   const double forward_mps = scenario_.initial_speed_kmh < 0.0 ? -mean_speed_mps_ : mean_speed_mps_;
-  if (!stopped_ && forward_mps <= kStandstill) {
-    stopped_ = true;
+  if (!HasStopped() && forward_mps <= kStandstill) {
     stop_time_s_ = record.time_s;
     stop_distance_m_ = mean_distance_m_;
-  } else if (stopped_ && std::abs(mean_speed_mps_) > kMoving) {
-    stopped_ = false;
+  } else if (HasStopped() && std::abs(mean_speed_mps_) > kMoving) {
+    stop_time_s_ = stop_distance_m_ = kNone;
   }
   if (record.ledger != nullptr) {
     ledger_ = *record.ledger;
     if (record.exchange == 0) initial_energy_j_ = ledger_.Stored();
   }
   state_digest_ = record.state_digest;
+}
+
+template <class Self, class Function>
+void RunSummary::ForEachMemory(Self& self, Function& function) {
+  function(self.start_position_m_);
+  function(self.initial_energy_j_);
+  function(self.stop_time_s_);
+  function(self.stop_distance_m_);
+}
+
+std::vector<double> RunSummary::Memory() const {
+  MemoryWriter writer;
+  ForEachMemory(*this, writer);
+  return writer.Take();
+}
+
+void RunSummary::SetMemory(const std::vector<double>& memory) {
+  MemoryReader reader(memory);
+  ForEachMemory(*this, reader);
+  reader.End();
 }
 
 std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
@@ -93,10 +112,9 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"final_speed_kmh\": {\"mean\": " << Number(kKmhPerMps * mean_speed_mps_)
        << ", \"lead\": " << Number(kKmhPerMps * lead_speed_mps_)
        << ", \"tail\": " << Number(kKmhPerMps * tail_speed_mps_)
-       << "},\n  \"stopped\": " << (stopped_ ? "true" : "false")
-       << ",\n  \"stop_time_s\": " << (stopped_ ? Number(stop_time_s_) : "null")
-       << ",\n  \"stop_distance_m\": " << (stopped_ ? Number(stop_distance_m_) : "null")
-       << ",\n  \"max_tension_n\": "
+       << "},\n  \"stopped\": " << (HasStopped() ? "true" : "false")
+       << ",\n  \"stop_time_s\": " << Number(stop_time_s_)
+       << ",\n  \"stop_distance_m\": " << Number(stop_distance_m_) << ",\n  \"max_tension_n\": "
        << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::tension_n,
                   &ForceExtremes::tension_time_s)
        << ",\n  \"max_compression_n\": "

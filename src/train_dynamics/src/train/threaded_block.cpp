@@ -31,6 +31,14 @@ void ThreadedBlock::Report(int offset, bool with_energy, ExchangeReply& reply) c
   for (const Share& share : shares_) share.block->Report(offset + share.first, with_energy, reply);
 }
 
+void ThreadedBlock::Save(double* state) const {
+  for (const Share& share : shares_) share.block->Save(state + share.first * NumbersPerVehicle());
+}
+
+void ThreadedBlock::Restore(const double* state) {
+  for (Share& share : shares_) share.block->Restore(state + share.first * NumbersPerVehicle());
+}
+
 VehicleFault ThreadedBlock::FindFault() const {
   for (const Share& share : shares_) {
     VehicleFault fault = share.block->FindFault();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 #include "train_dynamics/vehicle/lane_kernels.h"
 
@@ -41,6 +42,34 @@ void TrainMaster::Start() {
   ShowRecord();
 }
 
+void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
+  const auto per_record = static_cast<std::uint64_t>(scenario_.ExchangesPerRecord());
+  if (checkpoint.exchange % per_record != 0) throw SnapshotError("does not follow a record of this scenario");
+  if (static_cast<long>(checkpoint.exchange) >= scenario_.Exchanges()) {
+    throw SnapshotError("leaves nothing to run: it is of exchange " + std::to_string(checkpoint.exchange) +
+                        ", and duration_s ends with exchange " + std::to_string(scenario_.Exchanges()));
+  }
+  forces_.SetMemory(checkpoint.connections);
+  transport_.Resume(checkpoint.exchange, checkpoint.vehicles, reply_);
+  last_speed_mps_ = reply_.speed_mps;
+  exchange_ = checkpoint.exchange;
+  digest_ = checkpoint.state_digest;
+}
+
+void TrainMaster::AskForCheckpoint() {
+  if (!RecordIsNext()) throw std::logic_error("a checkpoint must follow a record");
+  request_.snapshot = true;
+}
+
+TrainCheckpoint TrainMaster::Checkpoint() const {
+  TrainCheckpoint checkpoint;
+  checkpoint.exchange = exchange_;
+  checkpoint.state_digest = digest_;
+  checkpoint.vehicles = reply_.snapshot;
+  checkpoint.connections = forces_.Memory();
+  return checkpoint;
+}
+
 void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
@@ -48,7 +77,7 @@ void TrainMaster::Exchange() {
 
   const std::uint64_t next = exchange_ + 1;
   request_.exchange = exchange_;
-  request_.record = next % scenario_.ExchangesPerRecord() == 0;
+  request_.record = RecordIsNext();
   const std::uint64_t next_record = next / scenario_.ExchangesPerRecord();
   const bool last = static_cast<long>(next) == scenario_.Exchanges();
   request_.ledger = request_.record && (last || next_record % scenario_.RecordsPerLedger() == 0);
@@ -59,6 +88,7 @@ void TrainMaster::Exchange() {
     throw SimulationFault("vehicle " + std::to_string(reply_.fault.vehicle + 1) + ": " + reply_.fault.what +
                           " at t = " + std::to_string(time_s()) + " s");
   }
+  request_.snapshot = false;
   forces_.CloseInterval(reply_.head_displacement_m);
   if (request_.record) ShowRecord();
 }

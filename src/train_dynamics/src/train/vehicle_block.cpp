@@ -1,7 +1,9 @@
 #include "train_dynamics/train/vehicle_block.h"
 
 #include <cmath>
+#include <cstring>
 
+#include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
 
 namespace train_dynamics {
@@ -117,6 +119,27 @@ class Block : public VehicleBlock {
     }
   }
 
+  int NumbersPerVehicle() const override { return kNumbers; }
+
+  void Save(double* state) const override {
+    for (const Run& run : runs_) {
+      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
+        const State vehicle = run.batch.StateOf(i);
+        std::memcpy(state, &vehicle, sizeof vehicle);
+      }
+    }
+  }
+
+  void Restore(const double* state) override {
+    for (Run& run : runs_) {
+      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
+        State vehicle;
+        std::memcpy(static_cast<void*>(&vehicle), state, sizeof vehicle);
+        run.batch.SetState(i, vehicle);
+      }
+    }
+  }
+
   VehicleFault FindFault() const override {
     for (const Run& run : runs_) {
       for (int i = 0; i < run.batch.size(); ++i) {
@@ -128,6 +151,9 @@ class Block : public VehicleBlock {
   }
 
  private:
+  using State = typename VehicleBatch<Vehicle>::State;
+  static constexpr int kNumbers = sizeof(State) / sizeof(double);
+
   /// Vehicles of one type, one behind the other.
   struct Run {
     int begin;  ///< index of the first in the train
@@ -140,6 +166,13 @@ class Block : public VehicleBlock {
 };
 
 }  // namespace
+
+void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& block, int vehicles) {
+  const std::size_t expected = static_cast<std::size_t>(vehicles) * block.NumbersPerVehicle();
+  if (snapshot.size() == expected) return;
+  throw SnapshotError("has " + std::to_string(snapshot.size()) + " numbers, but " + std::to_string(vehicles) +
+                      " vehicle(s) of this model have " + std::to_string(expected));
+}
 
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count) {

@@ -14,8 +14,8 @@ namespace wagon_node {
 ///
 ///   request     | no run yet     | run A, whose next exchange is k           | from another run
 ///   ------------+----------------+-------------------------------------------+-------------------------------
-///   Configure   | starts the run | k = 0: starts again; k > 0: refused       | refused while A is driven,
-///               |                |                                           | else starts the other run
+///   Configure   | starts the run | k = 0 or `again`: starts again;           | refused while A is driven,
+///               |                | else refused                              | else starts the other run
 ///   Step k      | refused        | moves the vehicles                        | refused
 ///   Step k - 1  | refused        | the same reply again, nothing moves       | refused
 ///   other Step  | refused        | refused, with both numbers                | refused

@@ -9,12 +9,14 @@ class InProcessTransport : public Transport {
  public:
   /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
   InProcessTransport(const ScenarioParams& scenario, const Consist& consist, int threads)
-      : vehicles_(scenario, consist, 0, consist.vehicles(), threads) {}
+      : count_(consist.vehicles()), vehicles_(scenario, consist, 0, count_, threads) {}
 
   void Start(ExchangeReply& reply) override;
+  void Resume(std::uint64_t exchange, const std::vector<double>& snapshot, ExchangeReply& reply) override;
   void Exchange(const ExchangeRequest& request, ExchangeReply& reply) override;
 
  private:
+  int count_;
   ThreadedBlock vehicles_;
 };
 

@@ -56,6 +56,11 @@ class InTrainForces {
   void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
 
+  /// All that the further forces, energies and extremes depend on, between two exchanges.
+  std::vector<double> Memory() const;
+  /// @throws SnapshotError if it is not of so many connections
+  void SetMemory(const std::vector<double>& memory);
+
  private:
   /// The connections of one type, side by side, filled up to whole packs of lanes.
   struct Set {
@@ -73,6 +78,10 @@ class InTrainForces {
   struct Place {
     int set, at;
   };
+
+  /// Calls function(number) for each number of the memory, connection by connection.
+  template <class Self, class Function>
+  static void ForEachMemory(Self& self, Function& function);
 
   double prediction_s_;
   std::vector<Set> sets_;

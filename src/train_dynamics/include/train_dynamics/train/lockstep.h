@@ -29,6 +29,7 @@ struct ExchangeRequest {
   int steps = 0;               ///< per exchange; the interval is steps * dt_s
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
+  bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
   std::vector<double>
       coupler_force_n;  ///< [vehicles + 1]: [i] before, [i + 1] behind vehicle i; tension positive
   std::vector<double> cylinder_pressure_pa;  ///< [vehicles]
@@ -68,6 +69,7 @@ struct ExchangeReply {
   std::vector<double> creepage;       ///< of the wheelset with the largest size; NaN for LTD
   std::vector<std::uint64_t> state_digest;
   std::vector<VehicleEnergy> energy;  ///< ledger
+  std::vector<double> snapshot;       ///< [vehicle][number], see VehicleBlock::Save
   std::vector<WagonDetail>
       details;  ///< record: whoever has one of these vehicles fills its entry (2D model only)
 
@@ -81,6 +83,9 @@ class Transport {
   virtual ~Transport() = default;
   /// Brings all vehicles to time 0 and fills a whole record, energies included.
   virtual void Start(ExchangeReply& reply) = 0;
+  /// Brings all vehicles to a state that a snapshot holds, at the beginning of an exchange; replies as Start.
+  /// @throws SnapshotError if the snapshot does not fit
+  virtual void Resume(std::uint64_t exchange, const std::vector<double>& snapshot, ExchangeReply& reply) = 0;
   /// One exchange with every vehicle; returns when all have replied.
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };

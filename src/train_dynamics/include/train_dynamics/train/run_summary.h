@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,26 @@ class RunSummary {
   /// @param fault  why the run ended early; empty: it did not, or was interrupted
   std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
 
+  /// What the summary of the whole run needs to know of its beginning.
+  std::vector<double> Memory() const;
+  /// @throws SnapshotError if it is not such
+  void SetMemory(const std::vector<double>& memory);
+
  private:
+  /// Calls function(number) for each number of the memory.
+  template <class Self, class Function>
+  static void ForEachMemory(Self& self, Function& function);
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  bool HasStopped() const { return stop_time_s_ == stop_time_s_; }
+
   const ScenarioParams& scenario_;
   double start_position_m_ = 0.0;  ///< mean
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
   int vehicles_ = 0;
-  bool stopped_ = false;
-  double stop_time_s_ = 0.0, stop_distance_m_ = 0.0;
+  double stop_time_s_ = kNone, stop_distance_m_ = kNone;  ///< NaN: has not stopped, or moves again
   double initial_energy_j_ = 0.0;
   EnergyLedger ledger_;  ///< the last one
   std::uint64_t state_digest_ = 0;

@@ -21,6 +21,9 @@ class ThreadedBlock : public VehicleBlock {
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override;
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override;
+  int NumbersPerVehicle() const override { return shares_.front().block->NumbersPerVehicle(); }
+  void Save(double* state) const override;
+  void Restore(const double* state) override;
   VehicleFault FindFault() const override;
 
  private:

@@ -8,6 +8,7 @@
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
 #include "train_dynamics/train/scenario.h"
+#include "train_dynamics/train/snapshot.h"
 
 namespace train_dynamics {
 
@@ -49,6 +50,16 @@ class TrainMaster {
 
   /// Brings the vehicles to time 0 and shows the first record.
   void Start();
+  /// Brings the vehicles and the books to the state of a checkpoint instead. Its record has been shown.
+  /// @throws SnapshotError if the checkpoint is not one of such a train
+  void Resume(const TrainCheckpoint& checkpoint);
+  /// Lets the next exchange leave a checkpoint. May be called before one that ends with a record.
+  void AskForCheckpoint();
+  /// The checkpoint that the last exchange has left, without what only its caller knows: scenario and summary.
+  TrainCheckpoint Checkpoint() const;
+  /// Whether the next exchange ends with a record.
+  bool RecordIsNext() const { return (exchange_ + 1) % scenario_.ExchangesPerRecord() == 0; }
+
   /// One exchange: the train moves on by one exchange interval.
   /// @throws SimulationFault naming the vehicle, the quantity and the time
   void Exchange();
@@ -67,7 +78,6 @@ class TrainMaster {
   PressureSource pressures_;
   InTrainForces forces_;
   std::uint64_t exchange_ = 0;
-  std::uint64_t record_ = 0;
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
   ExchangeReply reply_;

@@ -21,9 +21,19 @@ class VehicleBlock {
   /// Replies with the present state, as a record.
   virtual void Report(int offset, bool with_energy, ExchangeReply& reply) const = 0;
 
+  /// How many numbers the state of one vehicle has.
+  virtual int NumbersPerVehicle() const = 0;
+  /// Writes the state, NumbersPerVehicle() of each vehicle.
+  virtual void Save(double* state) const = 0;
+  /// Takes such a state back.
+  virtual void Restore(const double* state) = 0;
+
   /// The first vehicle of the block whose state is not finite or absurd, if any.
   virtual VehicleFault FindFault() const = 0;
 };
+
+/// @throws SnapshotError if a snapshot has not the numbers of `vehicles` vehicles of the block's kind
+void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& block, int vehicles);
 
 /// Builds the vehicles [first, first + count) of a scenario's train at their start state.
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,

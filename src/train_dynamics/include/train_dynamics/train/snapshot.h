@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace train_dynamics {
+
+/// Bytes that are not a snapshot, or not one that fits.
+class SnapshotError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The state of a contiguous block of vehicles at the beginning of an exchange: all that their further motion
+/// depends on, but for their parameters.
+struct BlockSnapshot {
+  std::uint64_t exchange = 0;  ///< the next one
+  std::uint64_t first = 0;     ///< index of the block's first vehicle in the train
+  std::uint64_t count = 0;     ///< vehicles
+  std::vector<double> state;   ///< [vehicle][number], see VehicleBlock::Save
+};
+
+/// The state of a whole train and of its books at the beginning of an exchange. Vehicles are not tied to the
+/// ranks that they were in.
+struct TrainCheckpoint {
+  std::string scenario;             ///< config::Write(scenario)
+  std::uint64_t exchange = 0;       ///< the next one; follows a record
+  std::uint64_t state_digest = 0;   ///< chained over all records so far
+  std::vector<double> vehicles;     ///< [vehicle][number], see VehicleBlock::Save
+  std::vector<double> connections;  ///< InTrainForces::Memory
+  std::vector<double> summary;      ///< RunSummary::Memory
+};
+
+/// As bytes: a mark, the format's version, the contents (little-endian, counts before arrays), a checksum.
+std::vector<std::uint8_t> Encode(const BlockSnapshot& snapshot);
+std::vector<std::uint8_t> Encode(const TrainCheckpoint& checkpoint);
+
+/// @throws SnapshotError if the bytes are something else, of another version, cut short or damaged
+BlockSnapshot DecodeBlockSnapshot(const std::vector<std::uint8_t>& bytes);
+TrainCheckpoint DecodeTrainCheckpoint(const std::vector<std::uint8_t>& bytes);
+
+/// Collects numbers; of a list of fields that is written once for saving and for restoring.
+class MemoryWriter {
+ public:
+  void operator()(double value) { numbers_.push_back(value); }
+  std::vector<double> Take() { return std::move(numbers_); }
+
+ private:
+  std::vector<double> numbers_;
+};
+
+/// Gives them back in the same order. Keeps a reference.
+class MemoryReader {
+ public:
+  explicit MemoryReader(const std::vector<double>& numbers) : numbers_(numbers) {}
+  /// @throws SnapshotError if there are no more
+  void operator()(double& value) {
+    if (at_ == numbers_.size()) throw SnapshotError("has too few numbers");
+    value = numbers_[at_++];
+  }
+  /// @throws SnapshotError if there are more
+  void End() const {
+    if (at_ != numbers_.size()) throw SnapshotError("has too many numbers");
+  }
+
+ private:
+  const std::vector<double>& numbers_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace train_dynamics

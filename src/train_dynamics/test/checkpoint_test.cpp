@@ -1,0 +1,185 @@
+// A run that goes on from a checkpoint is the run that was never broken off: the same bits in every record, and
+// the same summary. Whatever the model, the number of threads, and what the parts of the train remember.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "simulate.h"
+#include "train_dynamics/config/writer.h"
+#include "train_dynamics/train/run_summary.h"
+#include "train_dynamics/train/snapshot.h"
+
+namespace train_dynamics {
+namespace {
+
+// What an observer sees of a record, bit for bit.
+struct Seen {
+  std::uint64_t exchange, digest;
+  std::vector<double> coupler_force_n, acceleration_mps2, speed_mps, shoe_force_n;
+  bool operator==(const Seen& other) const {
+    return exchange == other.exchange && digest == other.digest && coupler_force_n == other.coupler_force_n &&
+           acceleration_mps2 == other.acceleration_mps2 && speed_mps == other.speed_mps &&
+           shoe_force_n == other.shoe_force_n;
+  }
+};
+
+struct TestRun {
+  TestRun(const std::string& scenario, const std::vector<std::string>& overrides, int threads)
+      : loaded(config::LoadScenario(ScenarioFile(scenario), overrides)),
+        transport(loaded.params, loaded.consist, threads),
+        master(loaded.params, loaded.consist, transport, loaded.pressures),
+        summary(loaded.params) {
+    master.AddObserver([this](const TrainRecord& record) {
+      summary.Observe(record);
+      seen.push_back({record.exchange, record.state_digest, record.coupler_force_n, record.acceleration_mps2,
+                      record.vehicles.speed_mps, record.vehicles.shoe_force_n});
+    });
+  }
+  // Runs on; leaves the checkpoint of an exchange.
+  void Go(std::uint64_t checkpoint_at = 0) {
+    while (!master.Done()) {
+      if (master.exchange() + 1 == checkpoint_at) master.AskForCheckpoint();
+      master.Exchange();
+      if (master.exchange() != checkpoint_at) continue;
+      checkpoint = master.Checkpoint();
+      checkpoint.summary = summary.Memory();
+    }
+  }
+  std::string Summary() const { return summary.Json(master, 1.0, ""); }
+
+  config::LoadedScenario loaded;
+  InProcessTransport transport;
+  TrainMaster master;
+  RunSummary summary;
+  std::vector<Seen> seen;
+  TrainCheckpoint checkpoint;
+};
+
+struct Case {
+  const char* name;
+  const char* scenario;
+  std::vector<std::string> overrides;
+  double share = 0.5;  // of the run that lies before the checkpoint
+};
+
+class CheckpointTest : public testing::TestWithParam<Case> {};
+
+TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
+  const Case& c = GetParam();
+  TestRun whole(c.scenario, c.overrides, 1);
+  whole.master.Start();
+  const std::uint64_t middle =
+      static_cast<std::uint64_t>(c.share * static_cast<double>(whole.loaded.params.Exchanges()));
+  whole.Go(middle);
+
+  // Through bytes, as a file brings it, and with another number of threads.
+  const TrainCheckpoint checkpoint = DecodeTrainCheckpoint(Encode(whole.checkpoint));
+  TestRun resumed(c.scenario, c.overrides, 3);
+  resumed.summary.SetMemory(checkpoint.summary);
+  resumed.master.Resume(checkpoint);
+  EXPECT_EQ(resumed.master.exchange(), middle);
+  resumed.Go();
+
+  ASSERT_FALSE(resumed.seen.empty());
+  const std::vector<Seen> tail(whole.seen.end() - static_cast<long>(resumed.seen.size()), whole.seen.end());
+  EXPECT_EQ(tail.front().exchange, middle + whole.loaded.params.ExchangesPerRecord());
+  EXPECT_TRUE(tail == resumed.seen);
+  EXPECT_EQ(whole.Summary(), resumed.Summary());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CheckpointTest,
+    testing::Values(Case{"Wagons", "emergency", {"model=2d", "duration_s=6"}},
+                    Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
+                    Case{"NewmarkWithoutInertia",
+                         "full_service",
+                         {"model=ltd-no-inertia", "integrator=newmark", "duration_s=20"}},
+                    Case{"StickSpringsRemember",
+                         "emergency",
+                         {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
+                    // After the wagon has come to rest: the summary remembers when it stopped.
+                    Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
+    [](const auto& c) { return std::string(c.param.name); });
+
+// ---- what does not fit is refused -------------------------------------------------------------------------------
+
+TrainCheckpoint ShortCheckpoint() {
+  static const TrainCheckpoint checkpoint = [] {
+    TestRun run("emergency", {"model=ltd", "duration_s=1"}, 1);
+    run.master.Start();
+    run.Go(500);
+    return run.checkpoint;
+  }();
+  return checkpoint;
+}
+
+std::string WhyNotResumed(const TrainCheckpoint& checkpoint, const std::vector<std::string>& overrides) {
+  TestRun run("emergency", overrides, 1);
+  try {
+    run.master.Resume(checkpoint);
+  } catch (const SnapshotError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Checkpoint, ThatDoesNotFitIsRefused) {
+  EXPECT_EQ(WhyNotResumed(ShortCheckpoint(), {"model=ltd", "duration_s=1"}), "");
+  EXPECT_NE(WhyNotResumed(ShortCheckpoint(), {"model=2d", "duration_s=1"}).find("vehicle"),
+            std::string::npos);
+  EXPECT_NE(WhyNotResumed(ShortCheckpoint(), {"model=ltd", "duration_s=0.5"}).find("nothing to run"),
+            std::string::npos);
+  TrainCheckpoint other = ShortCheckpoint();
+  other.connections.pop_back();
+  EXPECT_NE(WhyNotResumed(other, {"model=ltd", "duration_s=1"}), "");
+  other = ShortCheckpoint();
+  other.connections.push_back(0.0);
+  EXPECT_NE(WhyNotResumed(other, {"model=ltd", "duration_s=1"}), "");
+  other = ShortCheckpoint();
+  ++other.exchange;
+  EXPECT_NE(WhyNotResumed(other, {"model=ltd", "duration_s=1"}).find("record"), std::string::npos);
+}
+
+TEST(Checkpoint, FollowsARecord) {
+  TestRun run("emergency", {"model=ltd", "duration_s=1"}, 1);
+  run.master.Start();
+  EXPECT_FALSE(run.master.RecordIsNext());
+  EXPECT_THROW(run.master.AskForCheckpoint(), std::logic_error);
+}
+
+TEST(Snapshot, EveryDamagedByteIsNoticed) {
+  BlockSnapshot snapshot;
+  snapshot.exchange = 7;
+  snapshot.first = 2;
+  snapshot.count = 3;
+  snapshot.state = {1.0, -2.0, 3.5};
+  const std::vector<std::uint8_t> bytes = Encode(snapshot);
+  EXPECT_EQ(DecodeBlockSnapshot(bytes).state, snapshot.state);
+  EXPECT_EQ(DecodeBlockSnapshot(bytes).exchange, 7u);
+  EXPECT_EQ(DecodeBlockSnapshot(bytes).first, 2u);
+  EXPECT_EQ(DecodeBlockSnapshot(bytes).count, 3u);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::vector<std::uint8_t> damaged = bytes;
+    damaged[i] ^= 0x10;
+    EXPECT_THROW(DecodeBlockSnapshot(damaged), SnapshotError) << "byte " << i;
+  }
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_THROW(DecodeBlockSnapshot({bytes.begin(), bytes.begin() + static_cast<long>(size)}), SnapshotError)
+        << "cut to " << size;
+  }
+  std::vector<std::uint8_t> longer = bytes;
+  longer.push_back(0);
+  EXPECT_THROW(DecodeBlockSnapshot(longer), SnapshotError);
+  EXPECT_THROW(DecodeTrainCheckpoint(bytes), SnapshotError);  // one for the other
+  std::vector<std::uint8_t> newer = bytes;
+  newer[8] = 9;
+  try {
+    DecodeBlockSnapshot(newer);
+    FAIL();
+  } catch (const SnapshotError& e) {
+    EXPECT_NE(std::string(e.what()).find("version 9"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace train_dynamics
