@@ -21,14 +21,13 @@ std::ofstream Open(const std::filesystem::path& file) {
   return stream;
 }
 
-void Check(std::ofstream& stream, const std::filesystem::path& file) {
-  stream.flush();
+void Check(const std::ofstream& stream, const std::filesystem::path& file) {
   if (!stream) throw std::runtime_error("could not write all of " + file.string() + ": is the disk full?");
 }
 
 template <class Values>
 void Row(std::ofstream& stream, const Values& values) {
-  for (double value : values) fmt::print(stream, ",{:.9g}", value);
+  fmt::print(stream, ",{:.9g}", fmt::join(values, ","));
 }
 
 }  // namespace
@@ -80,6 +79,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
   }
   position_m_ = record.vehicles.position_m;
   speed_mps_ = speed;
+  CheckAll();
 }
 
 void CsvRecorder::OpenWagon(int vehicle, int vehicles) {
@@ -116,11 +116,17 @@ void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
   for (size_t i = 0; i < speed_mps_.size(); ++i) {
     fmt::print(vehicles, "{},{:.12g},{:.9g}\n", i + 1, position_m_[i], speed_mps_[i]);
   }
+  for (std::ofstream* stream : {&couplers, &vehicles, &history_, &pressures_}) stream->flush();
+  for (auto& [vehicle, stream] : wagons_) stream.flush();
   Check(couplers, folder_ / "couplers.csv");
   Check(vehicles, folder_ / "vehicles.csv");
+  CheckAll();
+}
+
+void CsvRecorder::CheckAll() const {
   Check(history_, folder_ / "train_history.csv");
   Check(pressures_, folder_ / "pressures.csv");
-  for (auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
+  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
 }
 
 }  // namespace ltd_master

@@ -1,5 +1,6 @@
 #include "ltd_master/run_output.h"
 
+#include <exception>
 #include <fstream>
 #include <regex>
 #include <stdexcept>
@@ -85,18 +86,32 @@ RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_f
   WriteResolvedConfig(scenario, folder_);
   if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / "train.bag").string());
   if (options.csv) csv_ = std::make_unique<CsvRecorder>(folder_);
+  if (bag_ == nullptr && csv_ == nullptr) return;
+  thread_ = std::make_unique<RecorderThread>([this](const train_dynamics::TrainRecord& record) {
+    if (bag_ != nullptr) bag_->Record(record);
+    if (csv_ != nullptr) csv_->Record(record);
+  });
 }
 
 void RunOutput::Record(const train_dynamics::TrainRecord& record) {
-  if (bag_ != nullptr) bag_->Record(record);
-  if (csv_ != nullptr) csv_->Record(record);
+  if (thread_ != nullptr) thread_->Record(record);
 }
 
 void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json) {
   if (folder_.empty()) return;
-  WriteFile(folder_ / "summary.json", summary_json);
-  if (bag_ != nullptr) bag_->Close();
-  if (csv_ != nullptr) csv_->Close(master);
+  std::exception_ptr error;
+  const auto attempt = [&error](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception&) {
+      if (error == nullptr) error = std::current_exception();
+    }
+  };
+  if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
+  if (bag_ != nullptr) attempt([&] { bag_->Close(); });
+  if (csv_ != nullptr) attempt([&] { csv_->Close(master); });
+  attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
+  if (error != nullptr) std::rethrow_exception(error);
 }
 
 }  // namespace ltd_master

@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -214,15 +215,32 @@ class TrainSimTest(unittest.TestCase):
     @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
     def test_a_full_disk_ends_the_run_with_what_fits(self):
         self.out.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", str(self.out)]).returncode != 0:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "none", str(self.out)]).returncode != 0:
             self.skipTest("this machine does not allow mounts")
         try:
             done = train_sim("run", EMERGENCY, "--model", "ltd", "--out", self.out, "--set", "duration_s=20")
             self.assertEqual(1, done.returncode, done.stderr)
             self.assertIn("could not be written", done.stderr)
-            self.assertFalse(json.loads(done.stdout)["complete"])
+            self.assertIn("train.bag: No space left on device", done.stderr)
+            summary = json.loads(done.stdout)
+            self.assertFalse(summary["complete"])
+            self.assertLess(summary["simulated_s"], 10)  # ended when the disk was full, with about 2 s recorded
+            self.assertEqual(summary, json.loads((self.out / "summary.json").read_text()))
+            with rosbag.Bag(str(self.out / "train.bag")) as bag:
+                self.assertGreater(bag.get_message_count("/train/state"), 0)
         finally:
             subprocess.run(["umount", str(self.out)], check=True)
+
+    def test_a_full_disk_for_tables_ends_the_run(self):
+        """Only the tables fail here: files of 40 kB are enough for the configuration, not for pressures.csv."""
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000))
+        done = subprocess.run([TRAIN_SIM, "run", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=small_files)
+        self.assertEqual(1, done.returncode, done.stderr)
+        self.assertIn("could not write all of", done.stderr)
+        self.assertFalse(json.loads(done.stdout)["complete"])
 
     def test_a_standing_ltd_wagon_has_no_brake_force(self):
         self.run_ok(str(CONFIG / "scenarios" / "single_wagon_stop.yaml"), "--model", "ltd", "--out", self.out)

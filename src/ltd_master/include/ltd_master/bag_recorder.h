@@ -1,10 +1,9 @@
 #pragma once
 
-#include <rosbag/bag.h>
-
-#include <memory>
+#include <map>
 #include <string>
 
+#include "ltd_master/bag_writer.h"
 #include "ltd_master/conversions.h"
 
 namespace ltd_master {
@@ -13,23 +12,23 @@ namespace ltd_master {
 ///
 ///   /train/state  /train/in_train_forces  /train/brake_pressures  /train/energy_ledger
 ///   /train/wagon_NNN/state
-///
-/// The bag is called FILE.active until it is complete, so that FILE is always readable.
 class BagRecorder {
  public:
-  /// @throws rosbag::BagException if the file cannot be made
+  /// @throws std::system_error if the file cannot be made
   explicit BagRecorder(const std::string& file);
-  ~BagRecorder();
 
-  /// An observer of the run's TrainMaster.
+  /// An observer of the run's TrainMaster. @throws std::system_error
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Closes the bag and gives it its name. @throws rosbag::BagException
-  void Close();
+  /// Completes the bag. @throws std::system_error
+  void Close() { bag_.Close(); }
 
  private:
-  std::string file_;
-  std::unique_ptr<rosbag::Bag> bag_;
+  int WagonTopic(int vehicle, int vehicles);
+
+  BagWriter bag_;
+  int state_topic_, forces_topic_, pressures_topic_, ledger_topic_;
+  std::map<int, int> wagon_topic_;  ///< by vehicle
   double initial_j_ = 0.0;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;

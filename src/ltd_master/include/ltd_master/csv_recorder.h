@@ -19,7 +19,7 @@ class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
 
-  /// An observer of the run's TrainMaster.
+  /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
   void Record(const train_dynamics::TrainRecord& record);
 
   /// Writes the tables of the end. @throws std::runtime_error if anything could not be written
@@ -27,6 +27,7 @@ class CsvRecorder {
 
  private:
   void OpenWagon(int vehicle, int vehicles);
+  void CheckAll() const;
 
   std::filesystem::path folder_;
   std::ofstream history_, pressures_;

@@ -6,6 +6,7 @@
 
 #include "ltd_master/bag_recorder.h"
 #include "ltd_master/csv_recorder.h"
+#include "ltd_master/recorder_thread.h"
 
 namespace ltd_master {
 
@@ -27,16 +28,21 @@ class RunOutput {
   RunOutput(const OutputOptions& options, const std::string& scenario_file,
             const train_dynamics::ScenarioParams& scenario);
 
-  /// An observer of the run's TrainMaster.
+  RunOutput(const RunOutput&) = delete;
+  RunOutput& operator=(const RunOutput&) = delete;
+
+  /// An observer of the run's TrainMaster; the files are written by another thread.
+  /// @throws std::exception if an earlier record could not be written
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Completes all files. @throws std::exception if one could not be written
+  /// Completes all files that can be. @throws std::exception if one could not be written
   void Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json);
 
  private:
   std::filesystem::path folder_;
   std::unique_ptr<BagRecorder> bag_;
   std::unique_ptr<CsvRecorder> csv_;
+  std::unique_ptr<RecorderThread> thread_;  ///< ends before its recorders do
 };
 
 /// Writes a whole file or nothing. @throws std::runtime_error

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ltd_master {
+
+/// Writes messages into a bag (format 2.0, not compressed), one after the other.
+///
+/// Does for a file that only grows what rosbag::Bag does for any. That one seeks before every message and
+/// writes it in pieces, 25 system calls for a record of a train, and cannot be closed on a full disk. Here a
+/// message is serialised into the open chunk, which goes to the file in one piece once it has 768 KiB.
+///
+/// The bag is called FILE.active until it is complete, so that FILE is always readable.
+class BagWriter {
+ public:
+  /// @throws std::system_error if the file cannot be made
+  explicit BagWriter(const std::string& file);
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
+  /// A new topic, for Write.
+  template <class Message>
+  int AddTopic(const std::string& name) {
+    namespace traits = ros::message_traits;
+    return AddConnection(name, traits::datatype<Message>(), traits::md5sum<Message>(),
+                         traits::definition<Message>());
+  }
+
+  /// @param time  not before that of the last message
+  /// @throws std::system_error if the file cannot grow any more
+  template <class Message>
+  void Write(int topic, ros::Time time, const Message& message) {
+    const std::uint32_t size = ros::serialization::serializationLength(message);
+    ros::serialization::OStream stream(BeginMessage(topic, time, size), size);
+    ros::serialization::serialize(stream, message);
+    if (chunk_.size() > kChunkThreshold) WriteChunk();
+  }
+
+  /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit.
+  /// @throws std::system_error if it lacks anything
+  void Close();
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+  static constexpr std::size_t kChunkThreshold = 768 * 1024;
+
+  struct Connection {
+    Bytes record;                ///< its description, as in the file
+    bool described = false;      ///< in a chunk
+    std::uint32_t messages = 0;  ///< in the open chunk
+    Bytes index;                 ///< time and place of each of these
+  };
+  struct Chunk {
+    std::uint64_t position = 0;                     ///< in the file
+    ros::Time begin, end;                           ///< times of its first and last message
+    std::map<std::uint32_t, std::uint32_t> counts;  ///< messages by connection
+  };
+
+  int AddConnection(const std::string& topic, const std::string& type, const std::string& md5sum,
+                    const std::string& definition);
+  std::uint8_t* BeginMessage(int topic, ros::Time time, std::uint32_t size);
+  void WriteChunk();
+  void WriteIndex();
+  void WriteFileHeader(std::uint64_t index_position, std::size_t connections);
+  void Write(const Bytes& bytes, std::uint64_t position);
+  [[noreturn]] void Fail() const;
+
+  std::string file_;
+  int descriptor_;
+  std::uint64_t size_;  ///< of the file, up to its last whole chunk
+  std::vector<Connection> connections_;
+  std::vector<Chunk> chunks_;  ///< in the file
+  Chunk open_;
+  Bytes chunk_;  ///< records of the open one
+};
+
+}  // namespace ltd_master
