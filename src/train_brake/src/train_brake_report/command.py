@@ -1,0 +1,161 @@
+"""The command `report`: arguments, files, exit codes."""
+
+import argparse
+import datetime
+import pathlib
+import platform
+import re
+import sys
+from typing import Dict, List
+
+import matplotlib
+import numpy
+
+from train_brake_report import cards, contents, page, paper, style
+from train_brake_report.bag import BagError
+from train_brake_report.group import Group
+from train_brake_report.run import Run, label_runs, scenario_of
+
+DESCRIPTION = """Makes a page with figures of one or several runs of the train: one HTML file that needs no network.
+
+RUN is a folder that a run has left, or a bag, whoever recorded it. Several runs are drawn over one another, with
+differences to the first."""
+EPILOG = "Exit codes: 0 done; 1 a run cannot be read, or the page cannot be written; 2 wrong arguments."
+
+
+def _natural(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"must be >= 1, got {number}")
+    return number
+
+
+def _html_file(text: str) -> pathlib.Path:
+    path = pathlib.Path(text)
+    if path.suffix != ".html":
+        raise argparse.ArgumentTypeError(f"must end in .html, got {text}")
+    return path
+
+
+def _arguments(argv: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser("report", description=DESCRIPTION, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="*", metavar="RUN", type=pathlib.Path, help="folder of a run, or a bag")
+    parser.add_argument("--out", type=_html_file, metavar="FILE.html",
+                        help="the page; default: report.html in the run's folder, or here if there are several runs")
+    parser.add_argument("--figures", type=pathlib.Path, metavar="FOLDER", help="write each figure there, too, as SVG and PNG")
+    parser.add_argument("--wagon", type=_natural, default=paper.WAGON, metavar="N",
+                        help="vehicle whose shoe and wheel are shown (default %(default)s, or the last of a shorter train)")
+    parser.add_argument("--coupler", type=_natural, metavar="N",
+                        help=f"connection whose force is shown (default {paper.COUPLER} on the paper's train, else the one "
+                             "with the largest force)")
+    parser.add_argument("--by-scenario", action="store_true", help="overlay only runs of the same scenario")
+    parser.add_argument("--vehicle", metavar="FILE.yaml", help="show adhesion and modes of this vehicle, too")
+    options = parser.parse_args(argv)
+    if not options.runs and not options.vehicle:
+        parser.error("nothing to report on: give a RUN (a folder or a bag), or --vehicle")
+    return options
+
+
+def _grouped(given: List[pathlib.Path], by_scenario: bool) -> Dict[str, List[pathlib.Path]]:
+    if not by_scenario:
+        return {"": given} if given else {}
+    groups: Dict[str, List[pathlib.Path]] = {}
+    for path in given:
+        groups.setdefault(scenario_of(path), []).append(path)
+    return groups
+
+
+def _read(given: List[pathlib.Path], wagon: int) -> List[Run]:
+    """All of them, or one error that names all that is wrong."""
+    runs, errors = [], []
+    for path in given:
+        try:
+            runs.append(Run(path, wagon))
+        except BagError as error:
+            errors.append(str(error))
+    if errors:
+        raise BagError("\n".join(errors))
+    label_runs(runs)
+    return runs
+
+
+def _anchor(text: str) -> str:
+    return re.sub(r"\W+", "_", text).strip("_").lower() or "runs"
+
+
+class Report:
+    """Collects the page group by group, so that only the runs of one group are in memory at a time."""
+
+    def __init__(self, options: argparse.Namespace):
+        self.options = options
+        self.cards: List[cards.Card] = []
+        self.sections: List[page.Section] = []
+        self.rows: List[cards.PaperRow] = []
+
+    def add_runs(self, name: str, given: List[pathlib.Path]) -> None:
+        runs = _read(given, self.options.wagon)
+        group = Group(_anchor(name) if self.options.by_scenario else "", runs, min(self.options.wagon, runs[0].vehicles),
+                      self.options.coupler or 0)
+        self.sections.append(page.Section(name or "Figures", f"section_{_anchor(name)}", contents.of_runs(group)))
+        for run in runs:
+            card = cards.card_of(run)
+            card.label = f"{name}: {card.label}" if name else card.label
+            self.cards.append(card)
+            self.rows += filter(None, [cards.paper_row(run)])
+
+    def add_tables(self) -> None:
+        if self.rows:
+            self.sections.append(page.Section("Tables of the paper", "tables", [cards.table_1(self.rows),
+                                                                               cards.table_2(self.rows)]))
+
+    def add_vehicle(self, train_sim: List[str]) -> None:
+        self.sections.append(page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, train_sim)))
+
+    def html(self) -> str:
+        title = "Train braking: " + (", ".join(sorted({c.title for c in self.cards})) if len(self.cards) == 1
+                                     else f"{len(self.cards)} runs" if self.cards else self.options.vehicle)
+        made = (f"Made on {datetime.datetime.now():%Y-%m-%d %H:%M} by report of train_brake, with Python "
+                f"{platform.python_version()}, NumPy {numpy.__version__}, Matplotlib {matplotlib.__version__}.")
+        return page.render(title, self.cards, self.sections, made)
+
+
+def _default_out(runs: List[pathlib.Path]) -> pathlib.Path:
+    if len(runs) != 1:
+        return pathlib.Path("report.html")
+    return (runs[0] if runs[0].is_dir() else runs[0].parent) / "report.html"
+
+
+def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.Path:
+    out = options.out or _default_out(options.runs)
+    with style.applied():
+        report = Report(options)
+        for name, given in _grouped(options.runs, options.by_scenario).items():
+            report.add_runs(name, given)
+        report.add_tables()
+        if options.vehicle:
+            report.add_vehicle(train_sim)
+        html = report.html()
+        if options.figures:
+            options.figures.mkdir(parents=True, exist_ok=True)
+            for section in report.sections:
+                for figure in section.figures:
+                    figure.save(options.figures)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = out.with_name(out.name + ".unfinished")
+    unfinished.write_text(html)
+    unfinished.replace(out)
+    return out
+
+
+def main(argv: List[str], train_sim: List[str] = ("rosrun", "ltd_master", "train_sim")) -> int:
+    options = _arguments(argv)
+    try:
+        print(f"report: wrote {write_report(options, list(train_sim))}")
+    except BagError as error:
+        print("\n".join(f"report: {line}" for line in str(error).splitlines()), file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"report: the page could not be written: {error}", file=sys.stderr)
+        return 1
+    return 0

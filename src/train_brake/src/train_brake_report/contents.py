@@ -1,0 +1,45 @@
+"""What stands on the page, in the order in which a reader needs it."""
+
+from typing import Callable, List, Tuple, Union
+
+from train_brake_report.figure import Figure, LeftOut
+from train_brake_report.figures import couplers, dip, energy, pressures, space_time, speeds, vehicle, wheel_forces
+from train_brake_report.group import Group
+
+Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out)
+
+OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
+    ("Speed", speeds.draw),
+    ("Cylinder pressures", pressures.draw),
+    ("Shoe and wheel", wheel_forces.draw),
+    ("Largest coupler forces along the train", couplers.draw_largest),
+    ("Force of a coupler", couplers.draw_history),
+    ("Coupler force, whole train", space_time.draw_force),
+    ("Cylinder pressure, whole train", space_time.draw_pressure),
+    ("Brake wave", space_time.draw_wave),
+    ("Wheel slip, whole train", space_time.draw_slip),
+    ("Acceleration, whole train", space_time.draw_acceleration),
+    ("Energy ledger", energy.draw),
+    ("A wagon over the dip", dip.draw),
+]
+
+
+def _draw(title: str, draw: Callable, *arguments) -> Item:
+    try:
+        return draw(*arguments)
+    except LeftOut as left_out:
+        return title, str(left_out)
+
+
+def of_runs(group: Group) -> List[Item]:
+    items = [_draw(title, draw, group) for title, draw in OF_RUNS]
+    if group.name:
+        for item in items:
+            if isinstance(item, Figure):
+                item.name = f"{group.name}_{item.name}"
+    return items
+
+
+def of_vehicle(vehicle_file: str, train_sim: List[str]) -> List[Item]:
+    return [_draw("Adhesion characteristics", vehicle.draw_adhesion, vehicle_file, train_sim),
+            _draw("Modes of vibration", vehicle.mode_table, vehicle_file, train_sim)]

@@ -1,0 +1,64 @@
+"""A figure of the report, as SVG that follows the page's colours and as files."""
+
+import dataclasses
+import io
+import pathlib
+import re
+from typing import List, Optional
+
+import matplotlib
+import matplotlib.figure
+
+from train_brake_report import style
+
+PNG_DPI = 120
+
+
+class LeftOut(Exception):
+    """Why a figure is not there, as a sentence for the page."""
+
+
+@dataclasses.dataclass
+class Table:
+    """Rows of texts below a figure, or by themselves."""
+
+    head: List[str]
+    rows: List[List[str]]
+
+
+@dataclasses.dataclass
+class Figure:
+    name: str  # of its files, without ending
+    title: str
+    caption: str
+    canvas: Optional[matplotlib.figure.Figure] = None  # None: a table only
+    table: Optional[Table] = None
+
+    def svg(self) -> str:
+        """To stand in a page: no prologue, colours as CSS variables that fall back to themselves."""
+        text = self._file("svg").decode()
+        text = text[text.index("<svg"):]
+        text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+        for colour, name in style.CSS_NAMES.items():
+            text = re.sub(rf"(?<=: ){colour}\b", f"var(--{name}, {colour})", text)
+        return text
+
+    def save(self, folder: pathlib.Path) -> None:
+        if self.canvas is None:
+            return
+        for ending in ("svg", "png"):
+            (folder / f"{self.name}.{ending}").write_bytes(self._file(ending))
+
+    def _file(self, ending: str) -> bytes:
+        buffer = io.BytesIO()
+        # The salt makes the ids in the file depend on the figure only: the same figure, the same file.
+        with matplotlib.rc_context({"svg.hashsalt": self.name}):
+            if ending == "svg":
+                self.canvas.savefig(buffer, format="svg", metadata={"Date": None})
+            else:
+                self.canvas.savefig(buffer, format="png", dpi=PNG_DPI, facecolor="white")
+        return buffer.getvalue()
+
+
+def new_canvas(height_in: float) -> matplotlib.figure.Figure:
+    return matplotlib.figure.Figure(figsize=(style.WIDTH_IN, height_in), layout="constrained")

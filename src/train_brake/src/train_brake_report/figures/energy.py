@@ -1,0 +1,81 @@
+"""Where the train's energy goes: the ledger over time, and what it does not account for."""
+
+import numpy
+
+from train_brake_report import style
+from train_brake_report.figure import Figure, LeftOut, new_canvas
+from train_brake_report.group import Group
+from train_brake_report.run import Run
+
+MJ = 1e-6
+LARGE = 0.01  # of the initial energy: what is seen in the stack
+
+
+def _series(run: Run) -> tuple:
+    """(times, energies [J] by name, initial [J], residual [J])."""
+    ledger = run.recording.ledger
+    time_s = numpy.array([m.header.stamp.to_sec() for m in ledger])
+    energies = {"kinetic": numpy.array([m.kinetic_j for m in ledger]),
+                "potential": numpy.array([m.potential_j for m in ledger])}
+    for i, element in enumerate(ledger[-1].element):
+        energies[element.replace("_", " ")] = numpy.array([m.dissipated_j[i] for m in ledger])
+    return time_s, energies, ledger[0].initial_j, numpy.array([m.residual_j for m in ledger])
+
+
+def draw(group: Group) -> Figure:
+    runs = [run for run in group.runs if len(run.recording.ledger) > 1]
+    if not runs:
+        raise LeftOut("The recording has no two messages of the type train_brake_msgs/EnergyLedger.")
+    shown = next((run for run in runs if run.model == "2d"), runs[0])
+    time_s, energies, initial_j, _ = _series(shown)
+    canvas = new_canvas(9.6)
+    stack, single, below = canvas.subplots(3, 1, sharex=True, height_ratios=[3, 4, 2])
+
+    dissipated = {name: e for name, e in energies.items() if name not in ("kinetic", "potential")}
+    large = {"kinetic": energies["kinetic"]}
+    large.update(sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * initial_j), key=lambda item: -item[1][-1]))
+    rest = sum(dissipated.values()) - sum(e for n, e in large.items() if n != "kinetic")
+    stack.stackplot(time_s, [MJ * e for e in large.values()] + [MJ * rest], colors=style.COLOURS[:len(large)] + [style.MUTED],
+                    labels=list(large) + ["everything else"], alpha=0.85, linewidth=0)
+    stack.set_ylabel("energy [MJ]")
+    style.legend_above(stack, columns=6)
+
+    _draw_single(single, time_s, dissipated)
+    for run in runs:
+        run_time_s, _, run_initial_j, run_residual_j = _series(run)
+        below.plot(run_time_s, run_residual_j / run_initial_j, label=run.label, **style.run_line(group.number(run)))
+    below.set_ylabel("residual over\ninitial energy")
+    below.set_xlabel("time [s]")
+    if len(runs) > 1:
+        style.legend_above(below)
+    for axes in (stack, single, below):
+        axes.margins(x=0)
+        style.mark_commands(axes, group.commands(), named=axes is stack)
+    caption = ("Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
+               "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration.")
+    if len(group.runs) > 1:
+        caption += f" Top and middle: {shown.label}."
+    gravity = shown.recording.ledger[-1].gravity_work_j
+    if abs(gravity) > LARGE * initial_j:
+        caption += f" The grade added {MJ * gravity:.0f} MJ."
+    for run in runs:
+        _, _, run_initial_j, run_residual_j = _series(run)
+        caption += f" {run.label}: residual {run_residual_j[-1] / run_initial_j:+.1e} at the end."
+    return Figure("energy", "Energy ledger", caption, canvas)
+
+
+def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
+    """Every element that dissipates, over six decades and more."""
+    taken = {name: e for name, e in dissipated.items() if e[-1] > 0.0}
+    smallest = max(1e-3, min((e[-1] for e in taken.values()), default=1.0) / 30)
+    ends = []
+    for i, (name, e) in enumerate(sorted(taken.items(), key=lambda item: -item[1][-1])):
+        colour = style.COLOURS[i % len(style.COLOURS)]
+        axes.semilogy(time_s, numpy.where(e > smallest, e, numpy.nan), color=colour,
+                      linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)))
+        ends.append((e[-1], name, colour))
+    axes.set_ylabel("dissipated [J]")
+    if ends:
+        axes.set_ylim(bottom=smallest)
+        axes.figure.draw_without_rendering()
+        style.label_ends(axes, ends, log=True)

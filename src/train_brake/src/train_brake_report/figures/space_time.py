@@ -1,0 +1,203 @@
+"""Pictures of the whole train over time: a row per vehicle, the colour is a quantity."""
+
+import dataclasses
+from typing import List
+
+import numpy
+from matplotlib import patheffects
+
+from train_brake_report import style, wave
+from train_brake_report.figure import Figure, LeftOut, Table, new_canvas
+from train_brake_report.group import Group
+from train_brake_report.run import Run
+from train_brake_report.series import common_rows, decimate
+from train_brake_report.slides import LOCKED, SLIDING, SLOWEST_MPS, find_slides
+
+COLUMNS = 1000
+ON_PICTURE = [patheffects.Stroke(linewidth=3.2, foreground="white"), patheffects.Normal()]
+ROWS_OF_SLIDES = 20
+
+
+@dataclasses.dataclass
+class Quantity:
+    name: str
+    title: str
+    unit: str
+    table: str
+    field: str
+    factor: float  # from SI to the unit
+    signed: bool  # a diverging colour scale
+    rows: str = "vehicle"
+    caption: str = ""
+
+    def of(self, run: Run) -> numpy.ndarray:
+        """[record, vehicle] in the unit."""
+        return numpy.float32(self.factor) * getattr(run.recording, self.table)[self.field]
+
+
+FORCE = Quantity("coupler_force_picture", "Coupler force, whole train", "coupler force [kN]", "forces", "coupler_force_n",
+                 1e-3, True, "connection", "Orange is tension, blue compression: shocks run along the train as slanted lines.")
+PRESSURE = Quantity("pressure_picture", "Cylinder pressure, whole train", "cylinder pressure [kPa]", "pressures",
+                    "cylinder_pressure_pa", 1e-3, False, caption="The brake starts as a wedge at each source.")
+SLIP = Quantity("slip_picture", "Wheel slip, whole train", "creepage [%]", "state", "creepage", 100.0, False,
+                caption="Creepage of each vehicle's wheelset with the largest.")
+ACCELERATION = Quantity("acceleration_picture", "Acceleration, whole train", "acceleration [m/s²]", "state",
+                        "acceleration_mps2", 1.0, True, caption="Blue slows down. Slanted lines are shocks that run along "
+                        "the train.")
+
+
+def _round_up(value: float) -> float:
+    """To two digits."""
+    if value <= 0.0:
+        return 1.0
+    scale = 10.0 ** (numpy.floor(numpy.log10(value)) - 1)
+    return float(numpy.ceil(value / scale - 1e-9) * scale)
+
+
+def _limit(values: numpy.ndarray) -> tuple:
+    """(where the colours end, the largest size): all of the values, or 99.9 % where few are far beyond."""
+    sizes = numpy.abs(values)
+    largest, most = float(sizes.max()), float(numpy.percentile(sizes, 99.9))
+    return (_round_up(largest) if largest < 1.3 * most else _round_up(most)), largest
+
+
+def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndarray, signed: bool, label: str) -> str:
+    """Draws values [record, vehicle]; returns a sentence on the limits of the colours."""
+    limit, largest = _limit(values)
+    beyond = largest > limit
+    image = axes.imshow(decimate(values, COLUMNS), aspect="auto", interpolation="nearest",
+                        cmap=style.DIVERGING if signed else style.SEQUENTIAL, vmin=-limit if signed else 0.0, vmax=limit,
+                        extent=(time_s[0], time_s[-1], values.shape[1] + 0.5, 0.5))
+    axes.grid(False)
+    axes.set_ylabel(quantity.rows)
+    bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label,
+                               extend=("both" if signed else "max") if beyond else "neither")
+    bar.outline.set_visible(False)
+    sign = "±" if signed else ""
+    unit = quantity.unit[quantity.unit.index("[") + 1:-1]
+    return (f"Colours end at {sign}{limit:g} {unit}" + (f" (99.9 % of the values; the largest is {largest:.3g})" if beyond
+                                                        else "") + ".")
+
+
+def _difference(quantity: Quantity, first: Run, run: Run) -> tuple:
+    a, b = (getattr(r.recording, quantity.table) for r in (first, run))
+    i, j = common_rows(a.time_s, b.time_s)
+    return a.time_s[i], quantity.of(run)[j] - quantity.of(first)[i]
+
+
+def _draw(quantity: Quantity, group: Group) -> tuple:
+    runs = [run for run in group.having(quantity.table) if numpy.isfinite(quantity.of(run)[0]).all()]
+    if not runs:
+        raise LeftOut("The LTD models have no wheels that could slip.")
+    if quantity.of(runs[0]).shape[1] < 2:
+        raise LeftOut("A picture along the train needs more than " +
+                      ("one connection." if quantity.rows == "connection" else "one vehicle."))
+    shown = next((run for run in runs if run.model == "2d"), runs[0])
+    first = runs[0]
+    differences = [(run, *_difference(quantity, first, run)) for run in group.comparable(runs)]
+    same = [run.label for run, _, values in differences if values.size and not values.any()]
+    differences = [(run, time_s, values) for run, time_s, values in differences if values.any()]
+
+    canvas = new_canvas(3.9 + 3.1 * len(differences))
+    panels = canvas.subplots(1 + len(differences), 1, sharex=True, squeeze=False)[:, 0]
+    values = quantity.of(shown)
+    signed = quantity.signed or values.min() < -0.1 * values.max()
+    limits = _picture(panels[0], quantity, getattr(shown.recording, quantity.table).time_s, values, signed, quantity.unit)
+    caption = f"{quantity.caption} {limits}"
+    if len(group.runs) > 1:
+        panels[0].set_title(shown.label, loc="left", fontsize=11.5)
+    for axes, (run, time_s, values) in zip(panels[1:], differences):
+        limits = _picture(axes, quantity, time_s, values, True, "difference " + quantity.unit[quantity.unit.index("["):])
+        axes.set_title(f"{run.label} - {first.label}", loc="left", fontsize=11.5)
+        caption += f" {run.label} - {first.label}: {limits[0].lower()}{limits[1:]}"
+    if same:
+        caption += f" {' and '.join(same)}: the same as {first.label}."
+    panels[-1].set_xlabel("time [s]")
+    return Figure(quantity.name, quantity.title, caption + group.without(runs, quantity.table), canvas), panels[0], shown
+
+
+def draw_force(group: Group) -> Figure:
+    return _draw(FORCE, group)[0]
+
+
+def draw_acceleration(group: Group) -> Figure:
+    return _draw(ACCELERATION, group)[0]
+
+
+def draw_pressure(group: Group) -> Figure:
+    return _draw(PRESSURE, group)[0]
+
+
+def draw_slip(group: Group) -> Figure:
+    figure, axes, run = _draw(SLIP, group)
+    slides = find_slides(run.recording.state)
+    rule = f"above {100 * SLIDING:g} % of creepage at more than {SLOWEST_MPS:g} m/s"
+    if not slides:
+        figure.caption += f" No wheel slid ({rule})."
+        return figure
+    for slide in slides:
+        axes.plot([slide.begin_s, slide.end_s], [slide.vehicle] * 2, color=style.VERMILLION, linewidth=2.0,
+                  solid_capstyle="round")
+    locked = sum(slide.locked for slide in slides)
+    figure.caption += (f" Wheel slides ({rule}), red lines: {len(slides)}, on {len({s.vehicle for s in slides})} vehicle(s); "
+                       f"{locked} of them locked ({100 * LOCKED:g} %).")
+    if len(slides) > ROWS_OF_SLIDES:
+        figure.caption += f" The table has the first {ROWS_OF_SLIDES}."
+    figure.table = Table(["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
+                         [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}",
+                           "yes" if s.locked else "no"] for s in slides[:ROWS_OF_SLIDES]])
+    return figure
+
+
+@dataclasses.dataclass
+class _Phase:
+    name: str
+    wave: wave.Wave
+    configured_mps: float
+
+
+def _phases(run: Run) -> List[_Phase]:
+    found, reason = [], None
+    for name, find, is_release in (("application", wave.application, False), ("release", wave.release, True)):
+        try:
+            found.append(_Phase(name, find(run), wave.configured_speed_mps(run, is_release)))
+        except LeftOut as left_out:
+            reason = reason or left_out
+    if not found:
+        raise reason
+    return found
+
+
+def draw_wave(group: Group) -> Figure:
+    run = group.having("pressures")[0]
+    phases = _phases(run)
+    canvas = new_canvas(3.9 * len(phases))
+    rows = canvas.subplots(len(phases), 2, squeeze=False, width_ratios=[3, 1], sharey=True)
+    time_s = run.recording.pressures.time_s
+    pressure = PRESSURE.of(run)
+    caption = ""
+    for (axes, beside), phase in zip(rows, phases):
+        found = phase.wave
+        begin, end = numpy.nanmin(found.arrival_s), numpy.nanmax(found.arrival_s)
+        window = (time_s >= begin - 1.0) & (time_s <= end + 3.0)
+        _picture(axes, PRESSURE, time_s[window], pressure[window], False, PRESSURE.unit)
+        for branch in found.branches:
+            vehicles = numpy.arange(branch.first, branch.last + 1)
+            axes.plot(branch.time_s, vehicles + 1, color=style.VERMILLION, linewidth=1.8, path_effects=ON_PICTURE)
+            beside.plot(1e3 * (found.arrival_s[vehicles] - branch.time_s), vehicles + 1, ".", color=style.VERMILLION,
+                        markersize=3)
+        reach = max(1.0, 1.1 * max(abs(v) for v in beside.get_xlim()))
+        beside.set_xlim(-reach, reach)
+        beside.set_xlabel("seen - fitted [ms]")
+        axes.set_xlabel("time [s]")
+        axes.set_title(f"{phase.name}: fitted {found.speed_mps:.2f} m/s"
+                       + (f", configured {phase.configured_mps:g} m/s" if phase.configured_mps else ""), loc="left",
+                       fontsize=11.5)
+        starts = ", ".join(f"vehicle {vehicle} at {start_s:.2f} s" for vehicle, start_s in found.sources())
+        caption += (f"The {phase.name} runs at {found.speed_mps:.2f} ± {found.speed_error_mps:.2f} m/s by least squares "
+                    f"over the times at which the recorded pressures begin to move ("
+                    + (f"configured: {phase.configured_mps:g} m/s" if phase.configured_mps
+                       else "the configuration names no speed for it")
+                    + f"); it starts at {starts}. ")
+    caption += "Lines: the fit. Right: how far each vehicle is from it."
+    return Figure("brake_wave", "Brake wave", caption, canvas)

@@ -1,0 +1,41 @@
+"""Puts everything into one HTML file that needs nothing else: no network, no other file."""
+
+import dataclasses
+import pathlib
+import re
+from typing import List
+
+import jinja2
+
+from train_brake_report.cards import Card
+from train_brake_report.contents import Item
+from train_brake_report.figure import Figure
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+@dataclasses.dataclass
+class Section:
+    title: str
+    anchor: str
+    items: List[Item]
+
+    @property
+    def figures(self) -> List[Figure]:
+        return [item for item in self.items if isinstance(item, Figure)]
+
+    @property
+    def left_out(self) -> list:
+        """(title, reason)"""
+        return [item for item in self.items if not isinstance(item, Figure)]
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"[-+]?[\d.]*", text) is not None
+
+
+def render(title: str, cards: List[Card], sections: List[Section], made: str) -> str:
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(str(HERE)), autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["is_number"] = _is_number
+    return environment.get_template("page.html").render(title=title, cards=cards, sections=sections, made=made)

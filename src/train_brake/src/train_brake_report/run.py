@@ -1,0 +1,178 @@
+"""A run of the train: its bag, and the config.yaml and summary.json of the same run where there are any."""
+
+import functools
+import json
+import pathlib
+from typing import List, Optional
+
+import numpy
+import yaml
+
+from train_brake_report.bag import BagError, Recording, read_bag
+
+KMH_PER_MPS = 3.6
+MODEL_NAMES = {"2d": "2D train", "ltd": "LTD", "ltd-no-inertia": "LTD without rotational inertia"}
+
+
+def _bag_of(given: pathlib.Path) -> pathlib.Path:
+    if not given.is_dir():
+        return given
+    for name in ("train.bag", "train.bag.active"):
+        if (given / name).exists():
+            return given / name
+    below = sorted(folder.name for folder in given.iterdir() if (folder / "train.bag").exists())
+    hint = f"; give one or more of its folders {', '.join(below)}" if below else ""
+    raise BagError(f"{given} holds no train.bag{hint}")
+
+
+def _parsed(file: pathlib.Path, parse) -> Optional[dict]:
+    if not file.exists():
+        return None
+    try:
+        content = parse(file.read_text())
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise BagError(f"{file} is damaged: {error}. Move it away to do without it") from None
+    if not isinstance(content, dict):
+        raise BagError(f"{file} is damaged: it is no list of keys. Move it away to do without it")
+    return content
+
+
+def _load_yaml(text: str) -> dict:
+    return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
+class Run:
+    """One run, read. What the bag or the folder lacks is None."""
+
+    def __init__(self, given: pathlib.Path, wagon: int):
+        self.given = given
+        self.bag = _bag_of(given)
+        self.recording: Recording = read_bag(self.bag, wagon)
+        self.notes: List[str] = []
+        folder = self.bag.parent
+        self.config = _parsed(folder / "config.yaml", _load_yaml)
+        self.summary = _parsed(folder / "summary.json", json.loads)
+        self.config_file = folder / "config.yaml"
+        self._judge_companions()
+        self._judge_records()
+        self.label = ""  # set by label_runs
+
+    def _judge_companions(self) -> None:
+        """config.yaml and summary.json belong to the train.bag beside them; to another bag if the digests agree."""
+        same = self.summary is None or self.digest is None or self.summary.get("state_digest") == self.digest
+        if self.bag.name.startswith("train.bag"):
+            if not same:
+                self.notes.append("The last record of the bag is not the last of the run (summary.json has another "
+                                  "digest): the end of the bag is missing.")
+        elif self.summary is None or not same or self.digest is None:
+            if self.config is not None:
+                self.notes.append("config.yaml and summary.json beside the bag are left aside: that they are of the "
+                                  "same run is not proved by an equal digest of the last record.")
+            self.config = self.summary = None
+
+    def _judge_records(self) -> None:
+        table = self.records
+        interval = numpy.median(numpy.diff(table.time_s)) if len(table) > 1 else 0.0
+        if table.time_s[0] > 1.5 * interval:
+            self.notes.append(f"The bag begins at {table.time_s[0]:.2f} s.")
+        gaps = numpy.diff(table.time_s) > 1.5 * interval
+        if gaps.any():
+            missing = int(numpy.round(numpy.diff(table.time_s)[gaps] / interval - 1).sum())
+            self.notes.append(f"{missing} records are missing from the bag, the first after "
+                              f"{table.time_s[:-1][gaps][0]:.2f} s.")
+        if self.complete is False:
+            self.notes.append(f"INCOMPLETE: the run ended at {self.end_s:.2f} s"
+                              + (f" of {self.config['duration_s']:g} s" if self.config else "")
+                              + (f", because {self.summary['fault']}." if self.fault else ", stopped by its user or cut off."))
+
+    @property
+    def records(self):
+        """Any of the tables: when the run was recorded."""
+        r = self.recording
+        return next(t for t in (r.state, r.forces, r.pressures, r.wagon) if t is not None)
+
+    @property
+    def end_s(self) -> float:
+        return float(self.records.time_s[-1])
+
+    @property
+    def complete(self) -> Optional[bool]:
+        """None: unknown, a bag alone does not tell."""
+        if self.summary is not None:
+            return bool(self.summary.get("complete"))
+        if self.config is not None:
+            return self.end_s >= self.config["duration_s"] - 1e-6
+        return None
+
+    @property
+    def fault(self) -> Optional[str]:
+        return (self.summary or {}).get("fault")
+
+    @property
+    def model(self) -> str:
+        named = (self.config or self.summary or {}).get("model")
+        if named:
+            return named
+        state = self.recording.state
+        return "2d" if state is not None and numpy.isfinite(state["creepage"]).any() else "ltd"
+
+    @property
+    def scenario(self) -> str:
+        """Empty if unknown."""
+        return (self.config or {}).get("name") or (self.summary or {}).get("scenario", "")
+
+    @property
+    def vehicles(self) -> int:
+        r = self.recording
+        for table, field, more in ((r.state, "position_m", 0), (r.pressures, "cylinder_pressure_pa", 0),
+                                   (r.forces, "coupler_force_n", 1)):
+            if table is not None:
+                return table[field].shape[1] + more
+        return max(r.detailed_vehicles)
+
+    @property
+    def digest(self) -> Optional[str]:
+        """Of all states up to the last record of the bag."""
+        state = self.recording.state
+        return f"{state['state_digest'][-1]:016x}" if state is not None and "state_digest" in state else None
+
+    @functools.cached_property
+    def masses_kg(self) -> numpy.ndarray:
+        """Of each vehicle; equal if the configuration is not known."""
+        if self.config is None:
+            return numpy.ones(self.vehicles)
+        masses = []
+        for item in self.config["train"]["consist"]:
+            v = item["vehicle"]
+            mass = (v["carbody"]["mass_kg"] + 2 * (v["bolster"]["mass_kg"] + 4 * v["wedge_mass_kg"])
+                    + 2 * v["bogie_frame"]["mass_kg"] + 4 * v["wheelset"]["mass_kg"])
+            masses += [mass] * item["count"]
+        return numpy.array(masses)
+
+    @functools.cached_property
+    def mean_speed_kmh(self) -> numpy.ndarray:
+        """Of the train's momentum, at each record of its state."""
+        return KMH_PER_MPS * (self.recording.state["speed_mps"] @ (self.masses_kg / self.masses_kg.sum()))
+
+    @property
+    def commands(self) -> List[dict]:
+        return (self.config or {}).get("commands") or []
+
+
+def scenario_of(given: pathlib.Path) -> str:
+    """The scenario's name, from the files beside the bag, without reading the bag; empty if unknown."""
+    folder = _bag_of(given).parent
+    summary = _parsed(folder / "summary.json", json.loads) or {}
+    return summary.get("scenario") or (_parsed(folder / "config.yaml", _load_yaml) or {}).get("name", "")
+
+
+def label_runs(runs: List[Run]) -> None:
+    """Names each run by what tells it from the others: its model, else its scenario, its folder, its path."""
+    for name in (lambda r: MODEL_NAMES.get(r.model, r.model), lambda r: r.scenario,
+                 lambda r: r.given.stem if r.given.suffix == ".bag" and r.given.stem != "train" else r.bag.parent.name,
+                 lambda r: str(r.given)):
+        labels = [name(run) for run in runs]
+        if len(set(labels)) == len(runs) and all(labels):
+            break
+    for run, label in zip(runs, labels):
+        run.label = label

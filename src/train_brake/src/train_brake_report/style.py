@@ -1,0 +1,77 @@
+"""How all figures look: one palette, readable by the colour-blind and on a projector."""
+
+import contextlib
+
+import matplotlib
+import numpy
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+
+# Okabe & Ito, Color Universal Design (2008); without its yellow, which is not seen on white.
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"
+INK, MUTED, GRID = "#1b1f24", "#59636e", "#d8dde3"
+COLOURS = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK]
+
+# The page gives these colours other values on a dark background (page.html).
+CSS_NAMES = {BLUE: "blue", VERMILLION: "vermillion", GREEN: "green", PURPLE: "purple", ORANGE: "orange", SKY: "sky",
+             INK: "ink", MUTED: "muted", GRID: "grid"}
+
+DIVERGING = LinearSegmentedColormap.from_list("tension_compression",
+                                              ["#00304b", BLUE, "#9fd0ea", "#f7f7f7", "#f6b98c", VERMILLION, "#5f2a00"])
+SEQUENTIAL = matplotlib.colormaps["cividis"]
+
+WIDTH_IN = 10.0
+
+RC = {
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"], "font.size": 11.5,
+    "axes.labelsize": 11.5, "xtick.labelsize": 10.5, "ytick.labelsize": 10.5, "legend.fontsize": 10.5,
+    "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": MUTED, "xtick.color": MUTED, "ytick.color": MUTED,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK,
+    "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.8, "axes.axisbelow": True,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.9,
+    "lines.linewidth": 1.8, "legend.frameon": False, "figure.facecolor": "none", "axes.facecolor": "none",
+    "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "axes.unicode_minus": True, "axes.formatter.useoffset": False,
+    "svg.fonttype": "none", "path.simplify_threshold": 0.3, "image.composite_image": False,
+}
+
+
+@contextlib.contextmanager
+def applied():
+    with matplotlib.rc_context(RC):
+        yield
+
+
+def run_line(number: int) -> dict:
+    """Of the run with this number, from 0. The first is broad: where runs agree, the others are seen upon it."""
+    return {"color": COLOURS[number % len(COLOURS)], "linewidth": 3.6 if number == 0 else 1.5,
+            "linestyle": "-" if number < 2 else (0, (4, 2))}
+
+
+def legend_above(axes: Axes, columns: int = 4, **options) -> None:
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=columns, borderaxespad=0.2, handlelength=2.2,
+                columnspacing=1.6, **options)
+
+
+def label_ends(axes: Axes, ends, log: bool = False) -> None:
+    """Names lines at their right ends instead of in a legend; ends: (y, text, colour). Labels keep apart."""
+    figure_height = axes.get_window_extent().height
+    low, high = (numpy.log(v) if log else v for v in axes.get_ylim())
+    gap = 1.25 * matplotlib.rcParams["legend.fontsize"] * axes.figure.dpi / 72 / figure_height
+    place = -numpy.inf
+    for y, text, colour in sorted(ends):
+        exact = ((numpy.log(y) if log else y) - low) / (high - low)
+        place = max(exact, place + gap)
+        axes.annotate(text, (1.0, exact), (1.02, place), xycoords="axes fraction", textcoords="axes fraction", va="center",
+                      color=colour, fontsize=matplotlib.rcParams["legend.fontsize"],
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0})
+
+
+def mark_commands(axes: Axes, commands, named: bool = True) -> None:
+    """Thin lines at the times of the driver's commands."""
+    for command in commands:
+        axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
+        if named:
+            kind = {"emergency": "emergency", "release": "release"}.get(
+                command["kind"], f"apply {command.get('reduction_kpa', 0):g} kPa")
+            axes.annotate(kind, (command["time_s"], 1.0), (4, -3), xycoords=("data", "axes fraction"),
+                          textcoords="offset points", va="top", fontsize=9.5, color=MUTED)
