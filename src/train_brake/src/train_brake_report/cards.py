@@ -16,6 +16,7 @@ class Fact:
     name: str
     value: object  # as it stands there
     text: str
+    more: str = ""
 
 
 @dataclasses.dataclass
@@ -39,13 +40,14 @@ def _extreme(facts: List[Fact], run: Run, key: str, name: str, sign: int) -> Non
         extreme = run.summary[key]
         if extreme is not None:
             facts.append(Fact(f"{key}.value", name, extreme["value"],
-                              f"{1e-3 * extreme['value']:.1f} kN, coupler {extreme['connection']}, {extreme['time_s']:.2f} s"))
+                              f"{1e-3 * extreme['value']:.1f} kN",
+                              f"coupler {extreme['connection']}, {extreme['time_s']:.2f} s"))
     elif run.recording.forces is not None and run.vehicles > 1:
         forces = sign * run.recording.forces["coupler_force_n"]
         record, connection = numpy.unravel_index(forces.argmax(), forces.shape)
         value = float(sign * forces[record, connection])
-        facts.append(Fact(f"{key}.value", name, value, f"{1e-3 * value:.1f} kN, coupler {connection + 1}, "
-                          f"{run.recording.forces.time_s[record]:.2f} s (of the records)"))
+        facts.append(Fact(f"{key}.value", name, value, f"{1e-3 * value:.1f} kN",
+                          f"coupler {connection + 1}, {run.recording.forces.time_s[record]:.2f} s; of the records"))
 
 
 def facts_of(run: Run) -> List[Fact]:
@@ -60,7 +62,7 @@ def facts_of(run: Run) -> List[Fact]:
         facts.append(Fact("final_speed_kmh.mean", "speed at the end", final, f"{final:.3f} km/h"))
     if summary.get("stopped"):
         facts.append(Fact("stop_time_s", "stopped after", summary["stop_time_s"],
-                          f"{summary['stop_time_s']:.2f} s, {summary['stop_distance_m']:.1f} m"))
+                          f"{summary['stop_time_s']:.2f} s", f"{summary['stop_distance_m']:.1f} m"))
     elif run.recording.state is not None:
         state = run.recording.state
         way_m = float((state["position_m"][-1] - state["position_m"][0]).mean())
@@ -69,10 +71,11 @@ def facts_of(run: Run) -> List[Fact]:
     _extreme(facts, run, "max_compression_n", "largest compression", -1)
     if "energy" in summary and summary["energy"]["initial_j"]:
         share = summary["energy"]["residual_j"] / summary["energy"]["initial_j"]
-        facts.append(Fact("energy.residual_j", "energy residual", summary["energy"]["residual_j"], f"{share:+.1e} of the initial"))
+        facts.append(Fact("energy.residual_j", "energy residual", summary["energy"]["residual_j"], f"{share:+.1e}",
+                          "of the initial energy"))
     if "real_time_factor" in summary:
         facts.append(Fact("real_time_factor", "times real time", summary["real_time_factor"],
-                          f"{summary['real_time_factor']:.1f} ({summary['wall_s']:.1f} s)"))
+                          f"{summary['real_time_factor']:.1f}", f"{summary['wall_s']:.1f} s"))
     return facts
 
 

@@ -62,3 +62,17 @@ class Figure:
 
 def new_canvas(height_in: float) -> matplotlib.figure.Figure:
     return matplotlib.figure.Figure(figsize=(style.WIDTH_IN, height_in), layout="constrained")
+
+
+def panels_with_differences(height_in: float, differences: List[str]) -> tuple:
+    """(canvas, the panel of the quantity itself, a lower panel for each difference), one above the other."""
+    below_in = 1.7
+    canvas = new_canvas(height_in + below_in * len(differences))
+    axes, *below = canvas.subplots(1 + len(differences), 1, sharex=True, squeeze=False,
+                                   height_ratios=[height_in] + [below_in] * len(differences))[:, 0]
+    for panel, title in zip(below, differences):
+        panel.set_title(title, loc="left", fontsize=matplotlib.rcParams["legend.fontsize"])
+        panel.axhline(0.0, color=style.MUTED, linewidth=1.0)
+    for panel in (axes, *below):
+        panel.margins(x=0)
+    return canvas, axes, below

@@ -3,6 +3,7 @@
 import dataclasses
 from typing import List
 
+from train_brake_report import style
 from train_brake_report.figure import LeftOut
 from train_brake_report.run import Run
 
@@ -24,12 +25,20 @@ class Group:
             raise LeftOut(f"The recording has no topic of the type train_brake_msgs/{TABLES[table]}.")
         return runs
 
-    def number(self, run: Run) -> int:
-        return self.runs.index(run)
+    def line(self, run: Run) -> dict:
+        """How the run is drawn in all figures."""
+        return style.run_line(self.runs.index(run), len(self.runs))
+
+    def colour(self, run: Run) -> str:
+        return self.line(run)["color"]
 
     def comparable(self, runs: List[Run]) -> List[Run]:
         """Those of runs[1:] with as many vehicles as the first, to take differences to it."""
         return [run for run in runs[1:] if run.vehicles == runs[0].vehicles]
+
+    @staticmethod
+    def difference(run: Run, first: Run) -> str:
+        return f"{run.label} \u2212 {first.label}"
 
     def without(self, runs: List[Run], table: str) -> str:
         """A sentence on the runs that a figure cannot show; empty if there are none."""

@@ -18,7 +18,7 @@ CSS_NAMES = {BLUE: "blue", VERMILLION: "vermillion", GREEN: "green", PURPLE: "pu
 
 DIVERGING = LinearSegmentedColormap.from_list("tension_compression",
                                               ["#00304b", BLUE, "#9fd0ea", "#f7f7f7", "#f6b98c", VERMILLION, "#5f2a00"])
-SEQUENTIAL = matplotlib.colormaps["cividis"]
+SEQUENTIAL = LinearSegmentedColormap.from_list("none_to_much", ["#f7f7f7", "#9fd0ea", BLUE, "#00304b"])
 
 WIDTH_IN = 10.0
 
@@ -41,15 +41,20 @@ def applied():
         yield
 
 
-def run_line(number: int) -> dict:
+def run_line(number: int, runs: int) -> dict:
     """Of the run with this number, from 0. The first is broad: where runs agree, the others are seen upon it."""
-    return {"color": COLOURS[number % len(COLOURS)], "linewidth": 3.6 if number == 0 else 1.5,
-            "linestyle": "-" if number < 2 else (0, (4, 2))}
+    width = 2.0 if runs == 1 else 4.0 if number == 0 else 1.5
+    return {"color": COLOURS[number % len(COLOURS)], "linewidth": width, "linestyle": "-" if number < 2 else (0, (4, 2))}
 
 
 def legend_above(axes: Axes, columns: int = 4, **options) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=columns, borderaxespad=0.2, handlelength=2.2,
                 columnspacing=1.6, **options)
+
+
+def legend_inside(axes: Axes) -> None:
+    """Where least is drawn."""
+    axes.legend(loc="best", ncol=2, frameon=False, borderaxespad=0.1, handlelength=2.2)
 
 
 def label_ends(axes: Axes, ends, log: bool = False) -> None:
@@ -63,15 +68,17 @@ def label_ends(axes: Axes, ends, log: bool = False) -> None:
         place = max(exact, place + gap)
         axes.annotate(text, (1.0, exact), (1.02, place), xycoords="axes fraction", textcoords="axes fraction", va="center",
                       color=colour, fontsize=matplotlib.rcParams["legend.fontsize"],
-                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0})
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0,
+                                  "relpos": (0.0, 0.5)})
 
 
-def mark_commands(axes: Axes, commands, named: bool = True) -> None:
+def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = False) -> None:
     """Thin lines at the times of the driver's commands."""
+    y, offset, align = (0.0, 4, "bottom") if at_bottom else (1.0, -3, "top")
     for command in commands:
         axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
         if named:
             kind = {"emergency": "emergency", "release": "release"}.get(
                 command["kind"], f"apply {command.get('reduction_kpa', 0):g} kPa")
-            axes.annotate(kind, (command["time_s"], 1.0), (4, -3), xycoords=("data", "axes fraction"),
-                          textcoords="offset points", va="top", fontsize=9.5, color=MUTED)
+            axes.annotate(kind, (command["time_s"], y), (4, offset), xycoords=("data", "axes fraction"),
+                          textcoords="offset points", va=align, fontsize=9.5, color=MUTED)

@@ -22,6 +22,11 @@ def _series(run: Run) -> tuple:
     return time_s, energies, ledger[0].initial_j, numpy.array([m.residual_j for m in ledger])
 
 
+def _residual_share(run: Run) -> numpy.ndarray:
+    _, _, initial_j, residual_j = _series(run)
+    return residual_j / initial_j
+
+
 def draw(group: Group) -> Figure:
     runs = [run for run in group.runs if len(run.recording.ledger) > 1]
     if not runs:
@@ -41,16 +46,18 @@ def draw(group: Group) -> Figure:
     style.legend_above(stack, columns=6)
 
     _draw_single(single, time_s, dissipated)
+    shares = {run: _residual_share(run) for run in runs}
+    largest = max(numpy.abs(share).max() for share in shares.values())
+    scale = 10.0 ** numpy.floor(numpy.log10(largest)) if largest > 0.0 else 1.0
     for run in runs:
-        run_time_s, _, run_initial_j, run_residual_j = _series(run)
-        below.plot(run_time_s, run_residual_j / run_initial_j, label=run.label, **style.run_line(group.number(run)))
-    below.set_ylabel("residual over\ninitial energy")
+        below.plot(_series(run)[0], shares[run] / scale, label=run.label, **group.line(run))
+    below.set_ylabel(f"residual over initial\nenergy [{scale:.0e}]")
     below.set_xlabel("time [s]")
     if len(runs) > 1:
         style.legend_above(below)
     for axes in (stack, single, below):
         axes.margins(x=0)
-        style.mark_commands(axes, group.commands(), named=axes is stack)
+        style.mark_commands(axes, group.commands(), named=axes is single)
     caption = ("Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
                "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration.")
     if len(group.runs) > 1:
@@ -59,8 +66,7 @@ def draw(group: Group) -> Figure:
     if abs(gravity) > LARGE * initial_j:
         caption += f" The grade added {MJ * gravity:.0f} MJ."
     for run in runs:
-        _, _, run_initial_j, run_residual_j = _series(run)
-        caption += f" {run.label}: residual {run_residual_j[-1] / run_initial_j:+.1e} at the end."
+        caption += f" {run.label}: residual {shares[run][-1]:+.1e} of the initial energy at the end."
     return Figure("energy", "Energy ledger", caption, canvas)
 
 

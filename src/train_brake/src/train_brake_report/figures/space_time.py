@@ -1,7 +1,7 @@
 """Pictures of the whole train over time: a row per vehicle, the colour is a quantity."""
 
 import dataclasses
-from typing import List
+from typing import List, Tuple
 
 import numpy
 from matplotlib import patheffects
@@ -30,9 +30,13 @@ class Quantity:
     rows: str = "vehicle"
     caption: str = ""
 
-    def of(self, run: Run) -> numpy.ndarray:
-        """[record, vehicle] in the unit."""
-        return numpy.float32(self.factor) * getattr(run.recording, self.table)[self.field]
+    def of(self, run: Run) -> Tuple[numpy.ndarray, numpy.ndarray]:
+        """(times [s], values [record, vehicle] in the unit) without records that do not know it: in LTD none knows
+        creepage, and the first record of any model knows no acceleration."""
+        table = getattr(run.recording, self.table)
+        values = numpy.float32(self.factor) * table[self.field]
+        known = numpy.isfinite(values).all(axis=1)
+        return table.time_s[known], values[known]
 
 
 FORCE = Quantity("coupler_force_picture", "Coupler force, whole train", "coupler force [kN]", "forces", "coupler_force_n",
@@ -79,37 +83,36 @@ def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndar
                                                         else "") + ".")
 
 
-def _difference(quantity: Quantity, first: Run, run: Run) -> tuple:
-    a, b = (getattr(r.recording, quantity.table) for r in (first, run))
-    i, j = common_rows(a.time_s, b.time_s)
-    return a.time_s[i], quantity.of(run)[j] - quantity.of(first)[i]
-
-
 def _draw(quantity: Quantity, group: Group) -> tuple:
-    runs = [run for run in group.having(quantity.table) if numpy.isfinite(quantity.of(run)[0]).all()]
+    """(the figure, the panel with the quantity itself, its run)"""
+    series = {run: quantity.of(run) for run in group.having(quantity.table)}
+    runs = [run for run, (time_s, _) in series.items() if len(time_s) > 1]
     if not runs:
-        raise LeftOut("The LTD models have no wheels that could slip.")
-    if quantity.of(runs[0]).shape[1] < 2:
-        raise LeftOut("A picture along the train needs more than " +
-                      ("one connection." if quantity.rows == "connection" else "one vehicle."))
-    shown = next((run for run in runs if run.model == "2d"), runs[0])
-    first = runs[0]
-    differences = [(run, *_difference(quantity, first, run)) for run in group.comparable(runs)]
-    same = [run.label for run, _, values in differences if values.size and not values.any()]
-    differences = [(run, time_s, values) for run, time_s, values in differences if values.any()]
+        raise LeftOut("The LTD models have no wheels that could slip." if quantity is SLIP else "There is but one record.")
+    first, shown = runs[0], next((run for run in runs if run.model == "2d"), runs[0])
+    if series[first][1].shape[1] < 2:
+        raise LeftOut(f"A picture along the train needs more than one {quantity.rows}.")
+    same, differences = [], []
+    for run in group.comparable(runs):
+        a, b = common_rows(series[first][0], series[run][0])
+        difference = series[run][1][b] - series[first][1][a]
+        if difference.any():
+            differences.append((run, series[run][0][b], difference))
+        else:
+            same.append(run.label)
 
     canvas = new_canvas(3.9 + 3.1 * len(differences))
     panels = canvas.subplots(1 + len(differences), 1, sharex=True, squeeze=False)[:, 0]
-    values = quantity.of(shown)
+    time_s, values = series[shown]
     signed = quantity.signed or values.min() < -0.1 * values.max()
-    limits = _picture(panels[0], quantity, getattr(shown.recording, quantity.table).time_s, values, signed, quantity.unit)
+    limits = _picture(panels[0], quantity, time_s, values, signed, quantity.unit)
     caption = f"{quantity.caption} {limits}"
     if len(group.runs) > 1:
         panels[0].set_title(shown.label, loc="left", fontsize=11.5)
     for axes, (run, time_s, values) in zip(panels[1:], differences):
         limits = _picture(axes, quantity, time_s, values, True, "difference " + quantity.unit[quantity.unit.index("["):])
-        axes.set_title(f"{run.label} - {first.label}", loc="left", fontsize=11.5)
-        caption += f" {run.label} - {first.label}: {limits[0].lower()}{limits[1:]}"
+        axes.set_title(group.difference(run, first), loc="left", fontsize=11.5)
+        caption += f" {group.difference(run, first)}: {limits[0].lower()}{limits[1:]}"
     if same:
         caption += f" {' and '.join(same)}: the same as {first.label}."
     panels[-1].set_xlabel("time [s]")
@@ -173,8 +176,7 @@ def draw_wave(group: Group) -> Figure:
     phases = _phases(run)
     canvas = new_canvas(3.9 * len(phases))
     rows = canvas.subplots(len(phases), 2, squeeze=False, width_ratios=[3, 1], sharey=True)
-    time_s = run.recording.pressures.time_s
-    pressure = PRESSURE.of(run)
+    time_s, pressure = PRESSURE.of(run)
     caption = ""
     for (axes, beside), phase in zip(rows, phases):
         found = phase.wave

@@ -22,12 +22,13 @@ def draw(group: Group) -> Figure:
     for run in runs:
         state = run.recording.state
         shoe, wheel = (KN / WHEELS * state[field][:, group.wagon - 1] for field in ("shoe_force_n", "wheel_force_n"))
-        look = style.run_line(group.number(run))
+        known = numpy.isfinite(wheel)
+        look = group.line(run)
         of_run = f", {run.label}" if len(runs) > 1 else ""
         axes.plot(state.time_s, shoe, label="shoe" + of_run, **look)
-        if numpy.isfinite(wheel).all():
+        if known.any():
             with_wheels.append(run)
-            axes.plot(state.time_s, wheel, color=style.ORANGE if group.number(run) == 0 else style.INK, linewidth=1.5,
+            axes.plot(state.time_s[known], wheel[known], color=style.ORANGE if run is group.runs[0] else style.INK, linewidth=1.5,
                       label="wheel" + of_run)
     if with_wheels:
         caption += (" A steady wheel force is lower than the shoe force by the share that slows the rotation, and higher by "
