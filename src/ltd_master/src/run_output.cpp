@@ -21,9 +21,8 @@ fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolu
 
 bool IsResult(const std::string& name) {
   static const std::regex pattern(
-      "train\\.bag(\\.active)?|(summary\\.json|config\\.yaml)(\\.unfinished)?|pressure_table\\.csv|train_"
-      "history\\.csv|"
-      "pressures\\.csv|couplers\\.csv|vehicles\\.csv|wagon_[0-9]+\\.csv");
+      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml)(\\.unfinished)?|"
+      "(pressure_table|train_history|pressures|couplers|vehicles|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
 

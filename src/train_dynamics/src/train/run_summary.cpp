@@ -100,8 +100,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
   char digest[20];
   std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
   std::ostringstream json;
-  json << "{\n  \"scenario\": " << Quoted(scenario_.name) << ",\n  \"model\": \""
-       << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << vehicles_
+  json << "{\n  \"version\": \"" << TRAIN_BRAKE_VERSION << "\",\n  \"scenario\": " << Quoted(scenario_.name)
+       << ",\n  \"model\": \"" << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << vehicles_
        << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
        << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
        << ",\n  \"simulated_s\": " << Number(simulated_s) << ",\n  \"wall_s\": " << Number(wall_s)
