@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Runs the paper's three scenarios with all three models and prints what came out beside the paper.
+"""Runs the paper's three scenarios with all three models and the dip, and shows what came out beside the paper.
 
 usage: tools/paper.py TRAIN_SIM RESULTS_FOLDER
 
-Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10.
-Exit code 0 when all nine runs completed.
+Prints Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10; writes all figures
+into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
 """
 
 import csv
@@ -13,20 +13,16 @@ import pathlib
 import subprocess
 import sys
 
-SCENARIOS = ["emergency", "full_service", "minimum"]
-MODELS = ["ltd-no-inertia", "ltd", "2d"]
-# Wu, Cole & Spiryagin 2020, Table 1 [km/h]
-PAPER_SPEED = {
-    ("ltd-no-inertia", "emergency"): 3.97, ("ltd-no-inertia", "full_service"): 1.05, ("ltd-no-inertia", "minimum"): 77.29,
-    ("ltd", "emergency"): 9.86, ("ltd", "full_service"): 7.20, ("ltd", "minimum"): 77.45,
-    ("2d", "emergency"): 9.94, ("2d", "full_service"): 7.18, ("2d", "minimum"): 77.42,
-}
-# The paper's text names two maxima of its Figure 11, coupler 105 in the emergency run [kN].
-PAPER_COUPLER_105 = {"ltd": 750.0, "2d": 484.0}
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "src" / "train_brake" / "src"))
+
+from train_brake_report.command import main as report  # noqa: E402
+from train_brake_report.paper import COUPLER, COUPLER_TENSION_KN, MODELS, SCENARIOS, SPEED_KMH  # noqa: E402
 
 
 def run(train_sim, scenario, model, out):
-    command = [train_sim, "run", f"config/scenarios/{scenario}.yaml", "--model", model, "--out", str(out), "--csv"]
+    command = [train_sim, "run", str(ROOT / "config" / "scenarios" / f"{scenario}.yaml"), "--model", model, "--out", str(out),
+               "--csv"]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)} ended with exit code {done.returncode}:\n{done.stderr}")
@@ -44,7 +40,7 @@ def print_table_1(results):
         row = f"{model:<17}"
         for scenario in SCENARIOS:
             ours = results[scenario, model]["final_speed_kmh"]["mean"]
-            paper = PAPER_SPEED[model, scenario]
+            paper = SPEED_KMH[model, scenario]
             row += f"{ours:10.3f}{paper:8.2f}{ours - paper:+8.3f}  "
         print(row)
 
@@ -66,11 +62,11 @@ def print_figure_10(results):
         largest, where = max(difference, key=lambda d: abs(d[0]))
         row += f"{mean / 1e3:12.2f}{largest / 1e3:+10.1f} @{where:>4d}"
         print(row)
-    print("\nCoupler 105, emergency, largest tension [kN]:")
+    print(f"\nCoupler {COUPLER}, emergency, largest tension [kN]:")
     for model in ("ltd", "2d"):
-        extreme = results["emergency", model]["couplers"][104]
+        extreme = results["emergency", model]["couplers"][COUPLER - 1]
         print(f"  {model:<6}{extreme['max_tension_n'] / 1e3:8.1f} at {extreme['max_tension_time_s']:.2f} s"
-              f"   (the paper: {PAPER_COUPLER_105[model]:g} near 35 s)")
+              f"   (the paper: {COUPLER_TENSION_KN[model]:g} near 35 s)")
 
 
 def print_energy(results):
@@ -81,17 +77,26 @@ def print_energy(results):
             for model in MODELS))
 
 
+def write_page(train_sim, folder):
+    # In this order: differences are taken to the first, LTD with inertia.
+    runs = [folder / f"{s}_{m}" for s in SCENARIOS for m in ("ltd", "2d", "ltd-no-inertia")]
+    return report([*map(str, runs), str(folder / "dip"), "--by-scenario", "--vehicle",
+                   str(ROOT / "config" / "vehicles" / "ore_wagon.yaml"), "--out", str(folder / "report.html")], [train_sim])
+
+
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     train_sim, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    print("Nine runs, recorded in", folder)
+    print("Ten runs, recorded in", folder)
     results = {(s, m): run(train_sim, s, m, folder / f"{s}_{m}") for s in SCENARIOS for m in MODELS}
+    run(train_sim, "dip", "2d", folder / "dip")
     print_table_1(results)
     print_figure_10(results)
     print_energy(results)
     wall = sum(r["wall_s"] for r in results.values())
-    print(f"\n{sum(r['simulated_s'] for r in results.values()):g} s of train in {wall:.1f} s")
+    print(f"\n{sum(r['simulated_s'] for r in results.values()):g} s of train in {wall:.1f} s", flush=True)
+    sys.exit(write_page(train_sim, folder))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,8 @@ import genpy
 import numpy
 import rosbag
 
+from train_brake_report import paper
+
 TRAIN_STATE = "train_brake_msgs/TrainState"
 IN_TRAIN_FORCES = "train_brake_msgs/InTrainForces"
 BRAKE_PRESSURES = "train_brake_msgs/BrakePressures"
@@ -54,7 +56,7 @@ class Recording:
     state: Optional[Table] = None
     forces: Optional[Table] = None
     pressures: Optional[Table] = None
-    wagon: Optional[Table] = None  # the chosen vehicle in full detail
+    wagon: Optional[Table] = None  # one vehicle in full detail
     ledger: List[genpy.Message] = dataclasses.field(default_factory=list)
     detailed_vehicles: List[int] = dataclasses.field(default_factory=list)
 
@@ -101,7 +103,7 @@ def _vehicle_of(bag: rosbag.Bag, topic: str) -> int:
     return next(bag.read_messages(topic)).message.vehicle
 
 
-def _read(bag: rosbag.Bag, wagon: int) -> Recording:
+def _read(bag: rosbag.Bag, wagon: Optional[int]) -> Recording:
     by_type = _topics_by_type(bag)
     chosen = {}
     for kind in (TRAIN_STATE, IN_TRAIN_FORCES, BRAKE_PRESSURES, ENERGY_LEDGER):
@@ -113,6 +115,8 @@ def _read(bag: rosbag.Bag, wagon: int) -> Recording:
     if not chosen and not details:
         raise BagError("it holds no topic of a train; it has "
                        + (", ".join(sorted(t for topics in by_type.values() for t in topics)) or "no message at all"))
+    if wagon is None and details:
+        wagon = paper.WAGON if paper.WAGON in details else min(details)
     if wagon in details:
         chosen[details[wagon]] = WAGON_STATE
 
@@ -128,8 +132,9 @@ def _read(bag: rosbag.Bag, wagon: int) -> Recording:
                      sorted(details))
 
 
-def read_bag(path: pathlib.Path, wagon: int) -> Recording:
-    """All of the train that the bag holds, and in full detail the given vehicle, if it was recorded so.
+def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
+    """All of the train that the bag holds, and one vehicle in full detail if it was recorded so: the given one; if none
+    is given, the paper's or the first.
 
     Topics are found by their type: it does not matter who recorded them, nor in which namespace.
     """

@@ -6,7 +6,7 @@ import pathlib
 import platform
 import re
 import sys
-from typing import Dict, List
+from typing import Dict, List, Optional
 
 import matplotlib
 import numpy
@@ -44,8 +44,8 @@ def _arguments(argv: List[str]) -> argparse.Namespace:
     parser.add_argument("--out", type=_html_file, metavar="FILE.html",
                         help="the page; default: report.html in the run's folder, or here if there are several runs")
     parser.add_argument("--figures", type=pathlib.Path, metavar="FOLDER", help="write each figure there, too, as SVG and PNG")
-    parser.add_argument("--wagon", type=_natural, default=paper.WAGON, metavar="N",
-                        help="vehicle whose shoe and wheel are shown (default %(default)s, or the last of a shorter train)")
+    parser.add_argument("--wagon", type=_natural, metavar="N",
+                        help=f"vehicle whose shoe and wheel are shown (default {paper.WAGON}, or the last of a shorter train)")
     parser.add_argument("--coupler", type=_natural, metavar="N",
                         help=f"connection whose force is shown (default {paper.COUPLER} on the paper's train, else the one "
                              "with the largest force)")
@@ -66,7 +66,7 @@ def _grouped(given: List[pathlib.Path], by_scenario: bool) -> Dict[str, List[pat
     return groups
 
 
-def _read(given: List[pathlib.Path], wagon: int) -> List[Run]:
+def _read(given: List[pathlib.Path], wagon: Optional[int]) -> List[Run]:
     """All of them, or one error that names all that is wrong."""
     runs, errors = [], []
     for path in given:
@@ -95,8 +95,8 @@ class Report:
 
     def add_runs(self, name: str, given: List[pathlib.Path]) -> None:
         runs = _read(given, self.options.wagon)
-        group = Group(_anchor(name) if self.options.by_scenario else "", runs, min(self.options.wagon, runs[0].vehicles),
-                      self.options.coupler or 0)
+        group = Group(_anchor(name) if self.options.by_scenario else "", runs,
+                      self.options.wagon or min(paper.WAGON, runs[0].vehicles), self.options.coupler)
         self.sections.append(page.Section(name or "Figures", f"section_{_anchor(name)}", contents.of_runs(group)))
         for run in runs:
             card = cards.card_of(run)

@@ -1,7 +1,7 @@
 """Runs that are drawn together, and what the user chose to see of them."""
 
 import dataclasses
-from typing import List
+from typing import List, Optional
 
 from train_brake_report import style
 from train_brake_report.figure import LeftOut
@@ -16,7 +16,7 @@ class Group:
     name: str  # of the scenario; empty if there is only one group
     runs: List[Run]
     wagon: int
-    coupler: int  # 0: the paper's, or the one with the largest force
+    coupler: Optional[int]  # None: the paper's, or the one with the largest force
 
     def having(self, table: str) -> List[Run]:
         """The runs whose bag has this table; LeftOut if none has."""

@@ -44,7 +44,7 @@ def _load_yaml(text: str) -> dict:
 class Run:
     """One run, read. What the bag or the folder lacks is None."""
 
-    def __init__(self, given: pathlib.Path, wagon: int):
+    def __init__(self, given: pathlib.Path, wagon: Optional[int]):
         self.given = given
         self.bag = _bag_of(given)
         self.recording: Recording = read_bag(self.bag, wagon)

@@ -30,7 +30,9 @@ def draw(group: Group) -> Figure:
         raise LeftOut("The track has no dip.")
     wagon = run.recording.wagon
     if wagon is None:
-        raise LeftOut(f"Vehicle {group.wagon} was not recorded in detail.")
+        raise LeftOut(f"Vehicle {group.wagon} was not recorded in detail"
+                      + (f"; these were: {', '.join(map(str, run.recording.detailed_vehicles))}."
+                         if run.recording.detailed_vehicles else ", nor any other."))
     dip = run.config["track"]["dips"][0]
     shown = _passage(wagon, run.config, dip)
     time_s = wagon.time_s[shown]
