@@ -24,6 +24,7 @@ class Card:
     """All of a run that the page needs when the run itself is gone from memory."""
 
     label: str
+    name: str
     title: str
     given: str
     complete: Optional[bool]
@@ -81,8 +82,8 @@ def facts_of(run: Run) -> List[Fact]:
 
 def card_of(run: Run) -> Card:
     config = run.config_file.read_text() if run.config is not None else ""
-    title = (run.config or {}).get("description") or run.scenario or run.bag.name
-    return Card(run.label, title, str(run.given), run.complete, run.notes, facts_of(run), config, run.digest or "",
+    name = f"{run.scenario or run.bag.name}, {MODEL_NAMES.get(run.model, run.model)}"
+    return Card(run.label, name, (run.config or {}).get("description", ""), str(run.given), run.complete, run.notes, facts_of(run), config, run.digest or "",
                 f"rosrun ltd_master train_sim run {run.config_file} --out NEW_FOLDER" if config else "", (run.summary or {}).get("version", ""))
 
 

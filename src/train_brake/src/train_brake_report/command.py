@@ -113,8 +113,8 @@ class Report:
         self.sections.append(page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, train_sim)))
 
     def html(self) -> str:
-        title = "Train braking: " + (", ".join(sorted({c.title for c in self.cards})) if len(self.cards) == 1
-                                     else f"{len(self.cards)} runs" if self.cards else self.options.vehicle)
+        title = "Train braking: " + (self.cards[0].name if len(self.cards) == 1 else f"{len(self.cards)} runs" if self.cards
+                                     else pathlib.Path(self.options.vehicle).stem)
         made = (f"Made on {datetime.datetime.now():%Y-%m-%d %H:%M} by report of train_brake, with Python "
                 f"{platform.python_version()}, NumPy {numpy.__version__}, Matplotlib {matplotlib.__version__}.")
         return page.render(title, self.cards, self.sections, made)

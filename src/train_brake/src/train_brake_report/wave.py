@@ -22,7 +22,7 @@ from train_brake_report.run import Run
 
 MOVED_PA = 100.0  # less is the rounding of a standing pressure
 FIRST, LAST = 0.005, 0.05  # of the rise: the samples that the arrival is found from
-STEADY = 0.2  # how far the slowness between two neighbours of a branch may be from the typical one, as a share
+STEADY = 0.1  # how far the slowness between two neighbours of a branch may be from the typical one, as a share
 
 
 @dataclasses.dataclass

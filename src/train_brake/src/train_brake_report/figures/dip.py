@@ -43,7 +43,6 @@ def draw(group: Group) -> Figure:
     above.plot(time_s, force_kn, color=style.BLUE, label="wheel of the first wheelset")
     above.axhline(force_kn[0], color=style.MUTED, linewidth=1.0, linestyle=(0, (4, 3)), label="at rest")
     above.set_ylabel("vertical force [kN]")
-    above.set_ylim(bottom=0)
     style.legend_above(above)
 
     pitch = MRAD * wagon["body_pitch_rad"][shown]
@@ -56,7 +55,8 @@ def draw(group: Group) -> Figure:
                       label="frame, by geometry alone" if sign > 0 else None)
     below.set_ylabel("pitch, nose down [mrad]")
     below.set_xlabel("time [s]")
-    below.margins(x=0)
+    for axes in (above, below):
+        axes.margins(x=0)
     style.legend_above(below)
 
     frame = pitch[:, FRAME_FRONT]

@@ -43,7 +43,7 @@ def draw(group: Group) -> Figure:
     stack.stackplot(time_s, [MJ * e for e in large.values()] + [MJ * rest], colors=style.COLOURS[:len(large)] + [style.MUTED],
                     labels=list(large) + ["everything else"], alpha=0.85, linewidth=0)
     stack.set_ylabel("energy [MJ]")
-    style.legend_above(stack, columns=6)
+    style.legend_above(stack, columns=5 if len(large) < 5 else 4)
 
     _draw_single(single, time_s, dissipated)
     shares = {run: _residual_share(run) for run in runs}

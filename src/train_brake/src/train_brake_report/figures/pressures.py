@@ -3,7 +3,7 @@
 import numpy
 
 from train_brake_report import style
-from train_brake_report.figure import Figure, new_canvas
+from train_brake_report.figure import Figure, LeftOut, new_canvas
 from train_brake_report.group import Group
 from train_brake_report.series import common_rows
 
@@ -19,10 +19,12 @@ def draw(group: Group) -> Figure:
     runs = group.having("pressures")
     first = runs[0]
     shown = spread_over_train(first.vehicles)
+    pressures = {run: KPA * run.recording.pressures["cylinder_pressure_pa"] for run in runs}
+    if not any(p.any() for p in pressures.values()):
+        raise LeftOut("No brake was applied.")
     canvas = new_canvas(4.2)
     axes = canvas.subplots()
     caption = "Pressure in the brake cylinders above the atmosphere."
-    pressures = {run: KPA * run.recording.pressures["cylinder_pressure_pa"] for run in runs}
     for vehicle, colour in zip(shown, style.COLOURS):
         axes.plot(first.recording.pressures.time_s, pressures[first][:, vehicle - 1], color=colour,
                   label=f"vehicle {vehicle}")
@@ -39,7 +41,7 @@ def draw(group: Group) -> Figure:
     axes.set_xlabel("time [s]")
     axes.set_ylabel("cylinder pressure [kPa]")
     axes.margins(x=0)
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0.0, 1.12 * max(p.max() for p in pressures.values()))
     style.mark_commands(axes, group.commands())
     style.legend_above(axes, columns=5)
     return Figure("pressures", "Cylinder pressures", caption + group.without(runs, "pressures"), canvas)

@@ -5,17 +5,19 @@ from typing import List, Tuple
 
 import numpy
 from matplotlib import patheffects
+from matplotlib.colors import LogNorm
 
 from train_brake_report import style, wave
 from train_brake_report.figure import Figure, LeftOut, Table, new_canvas
 from train_brake_report.group import Group
 from train_brake_report.run import Run
 from train_brake_report.series import common_rows, decimate
-from train_brake_report.slides import LOCKED, SLIDING, SLOWEST_MPS, find_slides
+from train_brake_report.slides import LOCKED, SLIDING, SLOWEST_MPS, Slide, find_slides
 
 COLUMNS = 1000
 ON_PICTURE = [patheffects.Stroke(linewidth=3.2, foreground="white"), patheffects.Normal()]
 ROWS_OF_SLIDES = 20
+LEAST_SLIP = 1e-3  # [%] where the logarithmic scale begins
 
 
 @dataclasses.dataclass
@@ -65,30 +67,41 @@ def _limit(values: numpy.ndarray) -> tuple:
     return (_round_up(largest) if largest < 1.3 * most else _round_up(most)), largest
 
 
+def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label: str, arrows: str, **colours) -> None:
+    image = axes.imshow(decimate(values, COLUMNS), aspect="auto", interpolation="nearest",
+                        extent=(time_s[0], time_s[-1], values.shape[1] + 0.5, 0.5), **colours)
+    axes.grid(False)
+    axes.set_ylabel(rows)
+    bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label, extend=arrows)
+    bar.outline.set_visible(False)
+
+
 def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndarray, signed: bool, label: str) -> str:
     """Draws values [record, vehicle]; returns a sentence on the limits of the colours."""
     limit, largest = _limit(values)
     beyond = largest > limit
-    image = axes.imshow(decimate(values, COLUMNS), aspect="auto", interpolation="nearest",
-                        cmap=style.DIVERGING if signed else style.SEQUENTIAL, vmin=-limit if signed else 0.0, vmax=limit,
-                        extent=(time_s[0], time_s[-1], values.shape[1] + 0.5, 0.5))
-    axes.grid(False)
-    axes.set_ylabel(quantity.rows)
-    bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label,
-                               extend=("both" if signed else "max") if beyond else "neither")
-    bar.outline.set_visible(False)
+    least = -limit if signed else 0.0
+    arrows = ["neither", "max", "min", "both"][int(values.max() > limit) + 2 * int(values.min() < least - 0.01 * limit)]
+    _image(axes, quantity.rows, time_s, values, label, arrows, cmap=style.DIVERGING if signed else style.SEQUENTIAL,
+           vmin=least, vmax=limit)
     sign = "±" if signed else ""
     unit = quantity.unit[quantity.unit.index("[") + 1:-1]
     return (f"Colours end at {sign}{limit:g} {unit}" + (f" (99.9 % of the values; the largest is {largest:.3g})" if beyond
                                                         else "") + ".")
 
 
-def _draw(quantity: Quantity, group: Group) -> tuple:
-    """(the figure, the panel with the quantity itself, its run)"""
+def _series(quantity: Quantity, group: Group) -> dict:
+    """{run: (times, values)} of the runs that know the quantity; LeftOut if there are none."""
     series = {run: quantity.of(run) for run in group.having(quantity.table)}
-    runs = [run for run, (time_s, _) in series.items() if len(time_s) > 1]
-    if not runs:
+    series = {run: (time_s, values) for run, (time_s, values) in series.items() if len(time_s) > 1}
+    if not series:
         raise LeftOut("The LTD models have no wheels that could slip." if quantity is SLIP else "There is but one record.")
+    return series
+
+
+def _draw(quantity: Quantity, group: Group) -> Figure:
+    series = _series(quantity, group)
+    runs = list(series)
     first, shown = runs[0], next((run for run in runs if run.model == "2d"), runs[0])
     if series[first][1].shape[1] < 2:
         raise LeftOut(f"A picture along the train needs more than one {quantity.rows}.")
@@ -104,7 +117,7 @@ def _draw(quantity: Quantity, group: Group) -> tuple:
     canvas = new_canvas(3.9 + 3.1 * len(differences))
     panels = canvas.subplots(1 + len(differences), 1, sharex=True, squeeze=False)[:, 0]
     time_s, values = series[shown]
-    signed = quantity.signed or values.min() < -0.1 * values.max()
+    signed = quantity.signed or numpy.percentile(values, 0.1) < -0.1 * values.max()
     limits = _picture(panels[0], quantity, time_s, values, signed, quantity.unit)
     caption = f"{quantity.caption} {limits}"
     if len(group.runs) > 1:
@@ -116,40 +129,60 @@ def _draw(quantity: Quantity, group: Group) -> tuple:
     if same:
         caption += f" {' and '.join(same)}: the same as {first.label}."
     panels[-1].set_xlabel("time [s]")
-    return Figure(quantity.name, quantity.title, caption + group.without(runs, quantity.table), canvas), panels[0], shown
+    return Figure(quantity.name, quantity.title, caption + group.without(runs, quantity.table), canvas)
 
 
 def draw_force(group: Group) -> Figure:
-    return _draw(FORCE, group)[0]
+    return _draw(FORCE, group)
 
 
 def draw_acceleration(group: Group) -> Figure:
-    return _draw(ACCELERATION, group)[0]
+    return _draw(ACCELERATION, group)
 
 
 def draw_pressure(group: Group) -> Figure:
-    return _draw(PRESSURE, group)[0]
+    return _draw(PRESSURE, group)
+
+
+SLIDE_RULE = f"creepage above {100 * SLIDING:g} % at more than {SLOWEST_MPS:g} m/s"
 
 
 def draw_slip(group: Group) -> Figure:
-    figure, axes, run = _draw(SLIP, group)
-    slides = find_slides(run.recording.state)
-    rule = f"above {100 * SLIDING:g} % of creepage at more than {SLOWEST_MPS:g} m/s"
-    if not slides:
-        figure.caption += f" No wheel slid ({rule})."
-        return figure
-    for slide in slides:
-        axes.plot([slide.begin_s, slide.end_s], [slide.vehicle] * 2, color=style.VERMILLION, linewidth=2.0,
-                  solid_capstyle="round")
-    locked = sum(slide.locked for slide in slides)
-    figure.caption += (f" Wheel slides ({rule}), red lines: {len(slides)}, on {len({s.vehicle for s in slides})} vehicle(s); "
-                       f"{locked} of them locked ({100 * LOCKED:g} %).")
-    if len(slides) > ROWS_OF_SLIDES:
-        figure.caption += f" The table has the first {ROWS_OF_SLIDES}."
-    figure.table = Table(["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
-                         [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}",
-                           "yes" if s.locked else "no"] for s in slides[:ROWS_OF_SLIDES]])
+    sliding = {run: find_slides(run.recording.state) for run in _series(SLIP, group)}
+    run = max(sliding, key=lambda r: len(sliding[r]))
+    if sliding[run]:
+        return _draw_slides(run, sliding[run])
+    figure = _draw(SLIP, group)
+    figure.caption += f" No wheel slid ({SLIDE_RULE})."
     return figure
+
+
+def _draw_slides(run: Run, slides: List[Slide]) -> Figure:
+    time_s, creepage = SLIP.of(run)
+    canvas = new_canvas(3.9)
+    axes = canvas.subplots()
+    if creepage.shape[1] > 1:
+        _image(axes, "vehicle", time_s, numpy.maximum(numpy.abs(creepage), LEAST_SLIP), "size of creepage [%]", "min",
+               cmap=style.SEQUENTIAL, norm=LogNorm(LEAST_SLIP, 100.0))
+        axes.plot([s.begin_s for s in slides], [s.vehicle for s in slides], ">", color=style.VERMILLION, markersize=4)
+        caption = f"{SLIP.caption} The scale is logarithmic."
+    else:
+        axes.plot(time_s, creepage[:, 0], linewidth=1.2)
+        axes.plot([s.begin_s for s in slides], [100 * SLIDING] * len(slides), ">", color=style.VERMILLION)
+        axes.set_ylabel(SLIP.unit)
+        axes.margins(x=0)
+        caption = "Creepage of the wheelset with the largest."
+    axes.set_xlabel("time [s]")
+    locked = sum(slide.locked for slide in slides)
+    caption += (f" Wheel slides of {run.label} ({SLIDE_RULE}) begin at the red marks: {len(slides)} on "
+                f"{len({s.vehicle for s in slides})} vehicle(s), {locked} of them with a locked wheel "
+                f"({100 * LOCKED:g} %).")
+    if len(slides) > ROWS_OF_SLIDES:
+        caption += f" The table has the first {ROWS_OF_SLIDES}."
+    table = Table(["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
+                  [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}",
+                    "yes" if s.locked else "no"] for s in slides[:ROWS_OF_SLIDES]])
+    return Figure(SLIP.name, SLIP.title, caption, canvas, table)
 
 
 @dataclasses.dataclass

@@ -14,7 +14,7 @@ def draw(group: Group) -> Figure:
     of_paper = [run for run in runs if paper.is_of_paper(run)]
     for run in runs:
         axes.plot(run.recording.state.time_s, run.mean_speed_kmh, label=run.label, **group.line(run))
-    if len(runs) == 1:
+    if len(runs) == 1 and first.vehicles > 1:
         speeds = KMH_PER_MPS * first.recording.state["speed_mps"]
         axes.fill_between(first.recording.state.time_s, speeds.min(axis=1), speeds.max(axis=1), color=style.BLUE,
                           alpha=0.25, linewidth=0, label="slowest to fastest vehicle")
@@ -26,7 +26,9 @@ def draw(group: Group) -> Figure:
     style.mark_commands(axes, group.commands(), at_bottom=True)
     style.legend_above(axes)
 
-    caption = "Speed of the train: the mean of its momentum. In a slack train single vehicles run up to 1 km/h faster or slower."
+    caption = "Speed of the train: the mean of its momentum."
+    if first.vehicles > 1:
+        caption += " In a slack train single vehicles run up to 1 km/h faster or slower."
     for panel, run in zip(below, others):
         a, b = common_rows(first.recording.state.time_s, run.recording.state.time_s)
         difference = run.mean_speed_kmh[b] - first.mean_speed_kmh[a]

@@ -37,18 +37,18 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
         creepage = 100 * numpy.array([float(row["creepage"]) for row in rows])
         for speed, colour in zip(SPEEDS_KMH, style.COLOURS):
             adhesion = numpy.array([float(row[f"adhesion_at_{speed}_kmh"]) for row in rows])
-            axes.semilogx(creepage[1:], adhesion[1:], color=colour, label=f"{speed} km/h" if surface == SETS[0] else None)
+            axes.semilogx(creepage[1:], adhesion[1:], color=colour, label=f"{speed} km/h")
             if speed == 80:
                 largest.append(f"{surface} {adhesion.max():.3f}")
         axes.annotate(surface, (0, 1), (8, -8), xycoords="axes fraction", textcoords="offset points", va="top",
                       fontsize=13, weight="bold")
         axes.margins(x=0)
-        axes.set_ylim(bottom=0)
     for axes in panels[2:]:
         axes.set_xlabel("creepage [%]")
     for axes in panels[::2]:
         axes.set_ylabel("adhesion")
-    style.legend_above(panels[0], columns=5)
+    panels[0].set_ylim(bottom=0)
+    panels[-1].legend(loc="upper right", ncol=2)  # room above the lowest adhesion
     return Figure("adhesion", "Adhesion characteristics",
                   f"Longitudinal over normal force of a wheelset at rest load. Largest at 80 km/h: {', '.join(largest)}. With "
                   "the paper's friction, 0.4 at any slip, adhesion neither depends on speed nor falls; the others are "

@@ -14,6 +14,8 @@ def draw(group: Group) -> Figure:
     runs = [run for run in group.having("state") if run.vehicles >= group.wagon]
     if not runs:
         raise LeftOut(f"There is no wagon {group.wagon}: the train has {group.runs[0].vehicles} vehicle(s).")
+    if not any(numpy.nan_to_num(run.recording.state["shoe_force_n"][:, group.wagon - 1]).any() for run in runs):
+        raise LeftOut("No brake was applied.")
     canvas = new_canvas(4.2)
     axes = canvas.subplots()
     caption = (f"Tangential force on one brake shoe and longitudinal force of the rail on one wheel of wagon {group.wagon}, "
