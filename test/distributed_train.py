@@ -19,8 +19,8 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
-from train_brake_msgs.msg import TrainState
-from train_brake_msgs.srv import StepExchanges
+from train_brake_msgs.msg import RunStatus, TrainState
+from train_brake_msgs.srv import SetRealTimeFactor, StepExchanges
 
 HERE = pathlib.Path(__file__).resolve().parent
 SHORT_TRAIN = HERE / "short_train.yaml"  # six wagons, 0.2 s
@@ -176,6 +176,42 @@ class DistributedTrain(unittest.TestCase):
             self.assertAlmostEqual(0.01, later - earlier, places=6)  # 100 Hz of simulated time, monotone
         self.assertEqual(launch.summary()["state_digest"], "%016x" % states[-1].state_digest)
 
+    def test_live_topics_and_pace(self):
+        status, live, all_states = [], [], []
+        rospy.Subscriber("/train/live/status", RunStatus, status.append, queue_size=10000)
+        rospy.Subscriber("/train/live/state", TrainState, live.append, queue_size=10000)
+        rospy.Subscriber("/train/state", TrainState, all_states.append, queue_size=10000)
+        launch = self.launch("nodes:=2", "start_paused:=true", "set:=duration_s=3")
+        rospy.wait_for_service("/train/master/set_real_time_factor", 60)
+        pace = rospy.ServiceProxy("/train/master/set_real_time_factor", SetRealTimeFactor)
+        for wrong in (-1.0, float("nan"), float("inf")):
+            reply = pace(wrong)
+            self.assertFalse(reply.success)
+            self.assertIn("real_time_factor must be >= 0", reply.message)
+        self.assertTrue(pace(2.0).success)
+        self.assertTrue(wait_until(lambda: status and status[-1].wanted_real_time_factor == 2.0, 10))
+        self.assertEqual(RunStatus.PAUSED, status[-1].state)
+        self.assertTrue(rospy.ServiceProxy("/train/master/step", StepExchanges)(50).success)
+        self.assertTrue(wait_until(lambda: status[-1].exchange == live[-1].exchange == 50, 10))  # nothing is held back
+
+        begin = time.monotonic()
+        self.assertTrue(rospy.ServiceProxy("/train/master/resume", Trigger)().success)
+        self.assertTrue(wait_until(lambda: status[-1].exchange >= 1000, 30))  # 2 s
+        paced_s = time.monotonic() - begin
+        self.assertGreater(paced_s, 0.9)  # (2 - 0.1) / 2 s: the pace began before `begin`, by an exchange at most
+        self.assertLess(len([s for s in status if s.exchange > 50]), 20 * paced_s + 2)  # at most 20 per second
+        self.assertTrue(pace(0).success)  # as fast as possible, from now on
+        self.assertEqual(0, launch.wait(), launch.log.read_text())
+
+        self.assertTrue(wait_until(lambda: status[-1].state == RunStatus.ENDED and live[-1].exchange == 1500, 10))
+        last = status[-1]
+        self.assertEqual(1500, last.exchange)
+        self.assertAlmostEqual(sum(live[-1].speed_mps) / 6, last.mean_speed_mps, places=6)  # equal vehicles
+        moved = [end - start for start, end in zip(all_states[0].position_m, live[-1].position_m)]
+        self.assertAlmostEqual(sum(moved) / 6, last.travelled_m, places=6)
+        self.assertGreaterEqual(last.max_tension_n, 0)
+        self.assertLessEqual(last.max_compression_n, 0)
+
     def test_names_are_what_a_ros_user_expects(self):
         launch = self.launch("nodes:=3", "start_paused:=true")
         rospy.wait_for_service("/train/master/step", 60)
@@ -184,8 +220,10 @@ class DistributedTrain(unittest.TestCase):
         topics = {name: kind for name, kind in graph.getTopicTypes()}
         for topic, kind in (("/train/state", "TrainState"), ("/train/in_train_forces", "InTrainForces"),
                             ("/train/brake_pressures", "BrakePressures"), ("/train/energy_ledger", "EnergyLedger"),
-                            ("/train/wagon_004/state", "WagonState")):
+                            ("/train/wagon_004/state", "WagonState"), ("/train/live/status", "RunStatus"),
+                            ("/train/live/wagon_004/state", "WagonState")):
             self.assertEqual("train_brake_msgs/" + kind, topics.get(topic), topic)
+        self.assertEqual("std_msgs/String", topics.get("/train/scenario"))
         _, _, services = graph.getSystemState()
         nodes = {node for _, providers in services for node in providers}
         self.assertLessEqual({"/train/master", "/train/wagon_001", "/train/wagon_003", "/train/wagon_005"}, nodes)

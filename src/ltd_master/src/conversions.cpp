@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "train_dynamics/config/writer.h"
+
 namespace ltd_master {
 namespace {
 
@@ -75,6 +77,12 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
   message.front_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle]);
   message.rear_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle + 1]);
   message.cylinder_pressure_pa = static_cast<float>(record.held_pressure_pa[detail.vehicle]);
+}
+
+std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario) {
+  std_msgs::String message;
+  message.data = train_dynamics::config::Write(scenario);
+  return message;
 }
 
 }  // namespace ltd_master

@@ -87,7 +87,8 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
 MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own)
     : options_(options),
       scenario_(train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
-      control_(options.start_paused) {
+      control_(options.start_paused, options.real_time_factor),
+      live_(node) {
   for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
   const int vehicles = scenario_.consist.vehicles();
   if (options.vehicles != 0 && options.vehicles != vehicles) {
@@ -105,11 +106,14 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   forces_publisher_ = node.advertise<train_brake_msgs::InTrainForces>("in_train_forces", kQueue);
   pressures_publisher_ = node.advertise<train_brake_msgs::BrakePressures>("brake_pressures", kQueue);
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
+  scenario_publisher_ = node.advertise<std_msgs::String>(kScenarioTopic, 1, true);
+  scenario_publisher_.publish(ScenarioMessage(scenario_.params));
   clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
   services_.push_back(own.advertiseService("resume", &MasterNode::OnResume, this));
   services_.push_back(own.advertiseService("step", &MasterNode::OnStep, this));
+  services_.push_back(own.advertiseService("set_real_time_factor", &MasterNode::OnSetRealTimeFactor, this));
 }
 
 std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
@@ -171,6 +175,9 @@ int MasterNode::Run() {
   }
   control_.End();
   spinner.stop();
+  LiveTopics::Pace pace = PaceNow();
+  pace.state = train_brake_msgs::RunStatus::ENDED;
+  live_.Settle(pace);
 
   if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
@@ -195,16 +202,11 @@ int MasterNode::Run() {
 
 void MasterNode::Loop(TrainMaster& master) {
   using Clock = std::chrono::steady_clock;
-  Pacer pacer(options_.real_time_factor);
   master.Start();
   Clock::time_point last_diagnostics = Clock::now();
   double simulated_then_s = 0.0;
-  bool was_waiting = false;
   while (!master.Done() && !Ending()) {
-    const bool admitted = control_.Admit();
-    if (admitted) {
-      if (was_waiting) pacer.Restart(master.time_s());
-      pacer.Wait(master.time_s());
+    if (control_.Admit(master.time_s())) {
       const Clock::time_point begin = Clock::now();
       master.Exchange();
       statistics_.Add(std::chrono::duration<double>(Clock::now() - begin).count());
@@ -214,12 +216,13 @@ void MasterNode::Loop(TrainMaster& master) {
       }
       simulated_s_ = master.time_s();
       control_.Completed();
+    } else {
+      live_.Settle(PaceNow());
     }
-    was_waiting = !admitted;
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
     if (elapsed_s >= 1.0) {
       real_time_factor_ = (master.time_s() - simulated_then_s) / elapsed_s;
-      PublishDiagnostics(master, admitted ? "running" : "paused");
+      PublishDiagnostics(master, control_.paused() ? "paused" : "running");
       simulated_then_s = master.time_s();
       last_diagnostics = Clock::now();
     }
@@ -245,6 +248,13 @@ void MasterNode::Publish(const TrainRecord& record) {
     Convert(record, *record.ledger, initial_energy_j_, ledger_);
     ledger_publisher_.publish(ledger_);
   }
+  live_.Show(record, PaceNow());
+}
+
+LiveTopics::Pace MasterNode::PaceNow() const {
+  using train_brake_msgs::RunStatus;
+  const std::uint8_t state = control_.paused() ? RunStatus::PAUSED : RunStatus::RUNNING;
+  return {state, real_time_factor_, control_.real_time_factor()};
 }
 
 void MasterNode::PublishClock(double simulated_s) {
@@ -310,6 +320,19 @@ bool MasterNode::OnStep(train_brake_msgs::StepExchanges::Request& request,
     if (!response.success) response.message = "the train is not paused, or the run has ended";
   }
   response.simulated_s = simulated_s_;
+  return true;
+}
+
+bool MasterNode::OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
+                                     train_brake_msgs::SetRealTimeFactor::Response& response) {
+  const double factor = request.real_time_factor;
+  response.success = factor >= 0.0 && std::isfinite(factor);
+  if (!response.success) {
+    response.message = fmt::format("real_time_factor must be >= 0, got {}", factor);
+    return true;
+  }
+  control_.SetRealTimeFactor(factor);
+  response.message = factor > 0.0 ? fmt::format("{:g} times real time", factor) : "as fast as possible";
   return true;
 }
 

@@ -1,6 +1,6 @@
 #include "ltd_master/run_control.h"
 
-#include <thread>
+#include <algorithm>
 
 namespace ltd_master {
 
@@ -25,15 +25,44 @@ bool RunControl::Step(std::uint64_t exchanges) {
   return steps_left_ == 0;
 }
 
+void RunControl::SetRealTimeFactor(double factor) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  real_time_factor_ = factor;
+  pace_mark_.reset();
+  changed_.notify_all();
+}
+
 bool RunControl::paused() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return paused_;
 }
 
-bool RunControl::Admit() {
+double RunControl::real_time_factor() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return real_time_factor_;
+}
+
+RunControl::Clock::time_point RunControl::Due(double simulated_s) {
+  constexpr double kForEver = 1e9;  // [s] that the clock can still count
+  if (real_time_factor_ <= 0.0) return Clock::time_point::min();
+  if (!pace_mark_) pace_mark_ = PaceMark{simulated_s, Clock::now()};
+  const std::chrono::duration<double> after(
+      std::min((simulated_s - pace_mark_->simulated_s) / real_time_factor_, kForEver));
+  return pace_mark_->wall + std::chrono::duration_cast<Clock::duration>(after);
+}
+
+bool RunControl::Admit(double simulated_s) {
   std::unique_lock<std::mutex> lock(mutex_);
-  const auto admitted = [this] { return !paused_ || steps_left_ > 0; };
-  return changed_.wait_for(lock, std::chrono::milliseconds(100), admitted);
+  const Clock::time_point patience = Clock::now() + std::chrono::milliseconds(100);
+  while (true) {
+    const bool may_move = !paused_ || steps_left_ > 0;
+    if (!may_move) pace_mark_.reset();  // a pause is not made up for
+    const Clock::time_point due = may_move ? Due(simulated_s) : Clock::time_point::max();
+    const Clock::time_point now = Clock::now();
+    if (due <= now) return true;
+    if (patience <= now) return false;
+    changed_.wait_until(lock, std::min(due, patience));
+  }
 }
 
 void RunControl::Completed() {
@@ -45,19 +74,6 @@ void RunControl::End() {
   const std::lock_guard<std::mutex> lock(mutex_);
   ended_ = true;
   changed_.notify_all();
-}
-
-void Pacer::Restart(double simulated_s) {
-  start_simulated_s_ = simulated_s;
-  start_ = Clock::now();
-  started_ = true;
-}
-
-void Pacer::Wait(double simulated_s) {
-  if (factor_ <= 0.0) return;
-  if (!started_) Restart(simulated_s);
-  const std::chrono::duration<double> due((simulated_s - start_simulated_s_) / factor_);
-  std::this_thread::sleep_until(start_ + std::chrono::duration_cast<Clock::duration>(due));
 }
 
 }  // namespace ltd_master

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <std_msgs/String.h>
 #include <train_brake_msgs/BrakePressures.h>
 #include <train_brake_msgs/EnergyLedger.h>
 #include <train_brake_msgs/InTrainForces.h>
@@ -22,6 +23,12 @@ void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::En
 
 void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
              train_brake_msgs::WagonState& message);
+
+/// Topic of the scenario, in the namespace of the train; once in a run.
+inline constexpr const char* kScenarioTopic = "scenario";
+
+/// The scenario with everything resolved, as YAML that runs again: what a viewer of a run or bag has to know.
+std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario);
 
 using train_dynamics::VehicleName;
 

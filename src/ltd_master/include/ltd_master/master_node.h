@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
+#include <train_brake_msgs/SetRealTimeFactor.h>
 #include <train_brake_msgs/StepExchanges.h>
 
 #include <atomic>
@@ -13,6 +14,7 @@
 
 #include "ltd_master/conversions.h"
 #include "ltd_master/exchange_statistics.h"
+#include "ltd_master/live_topics.h"
 #include "ltd_master/progress.h"
 #include "ltd_master/ros_transport.h"
 #include "ltd_master/run_control.h"
@@ -45,7 +47,8 @@ struct MasterOptions {
 /// The master of a train as a ROS node: runs it once, publishes and records it, and can be paused.
 ///
 ///   publishes   state  in_train_forces  brake_pressures  energy_ledger  (every record)   /clock /diagnostics
-///   services    ~pause  ~resume  ~step
+///               scenario (once, with everything resolved)   live/... (see LiveTopics)
+///   services    ~pause  ~resume  ~step  ~set_real_time_factor
 class MasterNode {
  public:
   MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own);
@@ -59,10 +62,13 @@ class MasterNode {
   void Publish(const train_dynamics::TrainRecord& record);
   void PublishClock(double simulated_s);
   void PublishDiagnostics(const train_dynamics::TrainMaster& master, const char* state);
+  LiveTopics::Pace PaceNow() const;
   bool OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
   bool OnResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
   bool OnStep(train_brake_msgs::StepExchanges::Request& request,
               train_brake_msgs::StepExchanges::Response& response);
+  bool OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
+                           train_brake_msgs::SetRealTimeFactor::Response& response);
 
   MasterOptions options_;
   train_dynamics::config::LoadedScenario scenario_;
@@ -75,8 +81,9 @@ class MasterNode {
   double real_time_factor_ = 0.0;  ///< over the last second of wall time
   std::atomic<double> simulated_s_{0.0};
 
+  LiveTopics live_;
   ros::Publisher state_publisher_, forces_publisher_, pressures_publisher_, ledger_publisher_,
-      clock_publisher_, diagnostics_publisher_;
+      scenario_publisher_, clock_publisher_, diagnostics_publisher_;
   std::vector<ros::ServiceServer> services_;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;

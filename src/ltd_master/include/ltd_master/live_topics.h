@@ -1,0 +1,57 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <train_brake_msgs/RunStatus.h>
+
+#include <chrono>
+#include <map>
+
+#include "ltd_master/conversions.h"
+
+namespace ltd_master {
+
+/// The newest record for people to look at, at most 20 times per second of WALL time however fast the run is:
+///
+///   live/status              RunStatus: a few numbers, for plotting tools and panels
+///   live/state  live/in_train_forces  live/brake_pressures  live/wagon_NNN/state
+///                            the same messages as without `live/`, where every record comes
+///
+/// All are latched: whoever comes late, or during a pause, gets the newest.
+class LiveTopics {
+ public:
+  /// The run as its loop sees it, which is not in the record.
+  struct Pace {
+    std::uint8_t state;  ///< of RunStatus
+    double real_time_factor, wanted_real_time_factor;
+  };
+
+  explicit LiveTopics(const ros::NodeHandle& node);
+
+  /// An observer of the run's TrainMaster: publishes the record, or holds it back for a moment.
+  void Show(const train_dynamics::TrainRecord& record, const Pace& pace);
+
+  /// Publishes what was held back, and the pace if it has changed. For a run that waits or has ended.
+  void Settle(const Pace& pace);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool HasListeners() const;
+  void Keep(const train_dynamics::TrainRecord& record);
+  void Publish(const Pace& pace);
+
+  ros::NodeHandle node_;
+  ros::Publisher status_publisher_, state_publisher_, forces_publisher_, pressures_publisher_;
+  std::map<int, ros::Publisher> wagon_publishers_;  ///< by index
+  train_brake_msgs::RunStatus status_;
+  train_brake_msgs::TrainState state_;
+  train_brake_msgs::InTrainForces forces_;
+  train_brake_msgs::BrakePressures pressures_;
+  std::map<int, train_brake_msgs::WagonState> wagons_;
+  double start_position_m_ = 0.0;  ///< of the train's centre of mass
+  bool held_back_ = false;
+  Clock::time_point next_;
+};
+
+}  // namespace ltd_master

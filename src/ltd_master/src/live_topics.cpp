@@ -1,0 +1,83 @@
+#include "ltd_master/live_topics.h"
+
+#include <algorithm>
+
+namespace ltd_master {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod(50);
+
+template <class Message>
+ros::Publisher Latched(ros::NodeHandle& node, const std::string& topic) {
+  constexpr int kQueue = 1;  // only the newest matters
+  return node.advertise<Message>(topic, kQueue, true);
+}
+
+}  // namespace
+
+LiveTopics::LiveTopics(const ros::NodeHandle& node)
+    : node_(node, "live"),
+      status_publisher_(Latched<train_brake_msgs::RunStatus>(node_, "status")),
+      state_publisher_(Latched<train_brake_msgs::TrainState>(node_, "state")),
+      forces_publisher_(Latched<train_brake_msgs::InTrainForces>(node_, "in_train_forces")),
+      pressures_publisher_(Latched<train_brake_msgs::BrakePressures>(node_, "brake_pressures")) {}
+
+void LiveTopics::Show(const train_dynamics::TrainRecord& record, const Pace& pace) {
+  if (record.exchange == 0) start_position_m_ = record.mean_position_m;
+  const Clock::time_point now = Clock::now();
+  const bool due = now >= next_;
+  if (!due && !HasListeners()) return;
+  Keep(record);
+  if (!due) return;
+  next_ = std::max(next_ + kPeriod, now);
+  Publish(pace);
+}
+
+void LiveTopics::Settle(const Pace& pace) {
+  const bool same = status_.state == pace.state && status_.real_time_factor == pace.real_time_factor &&
+                    status_.wanted_real_time_factor == pace.wanted_real_time_factor;
+  if (held_back_ || !same) Publish(pace);
+}
+
+bool LiveTopics::HasListeners() const {
+  return status_publisher_.getNumSubscribers() > 0 || state_publisher_.getNumSubscribers() > 0;
+}
+
+void LiveTopics::Keep(const train_dynamics::TrainRecord& record) {
+  Convert(record, state_);
+  Convert(record, forces_);
+  Convert(record, pressures_);
+  for (const train_dynamics::WagonDetail& detail : record.vehicles.details)
+    Convert(record, detail, wagons_[detail.vehicle]);
+  status_.header.stamp = state_.header.stamp;
+  status_.exchange = record.exchange;
+  status_.mean_speed_mps = record.mean_speed_mps;
+  status_.travelled_m = record.mean_position_m - start_position_m_;
+  // The two ends of the train, which have no coupler and no force, are in the list: hence >= 0 and <= 0.
+  const auto [smallest, largest] =
+      std::minmax_element(record.coupler_force_n.begin(), record.coupler_force_n.end());
+  status_.max_tension_n = *largest;
+  status_.max_compression_n = *smallest;
+  held_back_ = true;
+}
+
+void LiveTopics::Publish(const Pace& pace) {
+  held_back_ = false;
+  status_.state = pace.state;
+  status_.real_time_factor = pace.real_time_factor;
+  status_.wanted_real_time_factor = pace.wanted_real_time_factor;
+  status_publisher_.publish(status_);
+  state_publisher_.publish(state_);
+  forces_publisher_.publish(forces_);
+  pressures_publisher_.publish(pressures_);
+  for (const auto& [vehicle, state] : wagons_) {
+    ros::Publisher& publisher = wagon_publishers_[vehicle];
+    if (!publisher) {
+      const int vehicles = static_cast<int>(state_.position_m.size());
+      publisher = Latched<train_brake_msgs::WagonState>(node_, VehicleName(vehicle, vehicles) + "/state");
+    }
+    publisher.publish(state);
+  }
+}
+
+}  // namespace ltd_master
