@@ -4,12 +4,17 @@
 
 namespace ltd_master {
 
-BagRecorder::BagRecorder(const std::string& file)
+BagRecorder::BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario)
     : bag_(file),
       state_topic_(bag_.AddTopic<train_brake_msgs::TrainState>("/train/state")),
       forces_topic_(bag_.AddTopic<train_brake_msgs::InTrainForces>("/train/in_train_forces")),
       pressures_topic_(bag_.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures")),
-      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {}
+      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {
+  constexpr bool kLatched = true;
+  const int scenario_topic =
+      bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
+  bag_.Write(scenario_topic, ros::TIME_MIN, ScenarioMessage(scenario));
+}
 
 void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
   // A bag knows no time before this one.

@@ -96,11 +96,12 @@ BagWriter::~BagWriter() {
 }
 
 int BagWriter::AddConnection(const std::string& topic, const std::string& type, const std::string& md5sum,
-                             const std::string& definition) {
+                             const std::string& definition, bool latched) {
   const auto id = static_cast<std::uint32_t>(connections_.size());
   Bytes& record = connections_.emplace_back().record;
   AppendHeader(record, "conn", id, "op", kConnection, "topic", topic);
-  AppendHeader(record, "md5sum", md5sum, "message_definition", definition, "type", type);  // the data
+  AppendHeader(record, "md5sum", md5sum, "message_definition", definition, "type", type, "latching",
+               std::string(latched ? "1" : "0"));  // the data
   return static_cast<int>(id);
 }
 

@@ -83,7 +83,7 @@ RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_f
   }
   PrepareFolder(folder_);
   WriteResolvedConfig(scenario, folder_);
-  if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / "train.bag").string());
+  if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / "train.bag").string(), scenario);
   if (options.csv) csv_ = std::make_unique<CsvRecorder>(folder_);
   if (bag_ == nullptr && csv_ == nullptr) return;
   thread_ = std::make_unique<RecorderThread>([this](const train_dynamics::TrainRecord& record) {

@@ -75,6 +75,7 @@ class TrainSimTest(unittest.TestCase):
             self.assertEqual(21, count["/train/in_train_forces"])
             self.assertEqual(21, count["/train/brake_pressures"])
             self.assertEqual(2, count["/train/energy_ledger"])  # the start and the end
+            self.assertEqual(1, count["/train/scenario"])
             for wagon in ("wagon_001", "wagon_100", "wagon_122", "wagon_242"):
                 self.assertEqual(21, count["/train/%s/state" % wagon])
             times = []

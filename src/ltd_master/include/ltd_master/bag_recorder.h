@@ -11,11 +11,11 @@ namespace ltd_master {
 /// Writes every record of a run into a bag, under the topics on which ltd_master publishes:
 ///
 ///   /train/state  /train/in_train_forces  /train/brake_pressures  /train/energy_ledger
-///   /train/wagon_NNN/state
+///   /train/wagon_NNN/state  /train/scenario
 class BagRecorder {
  public:
   /// @throws std::system_error if the file cannot be made
-  explicit BagRecorder(const std::string& file);
+  BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
 
   /// An observer of the run's TrainMaster. @throws std::system_error
   void Record(const train_dynamics::TrainRecord& record);

@@ -26,12 +26,12 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// A new topic, for Write.
+  /// A new topic, for Write. @param latched  a player gives its last message to whoever comes later
   template <class Message>
-  int AddTopic(const std::string& name) {
+  int AddTopic(const std::string& name, bool latched = false) {
     namespace traits = ros::message_traits;
     return AddConnection(name, traits::datatype<Message>(), traits::md5sum<Message>(),
-                         traits::definition<Message>());
+                         traits::definition<Message>(), latched);
   }
 
   /// @param time  not before that of the last message
@@ -65,7 +65,7 @@ class BagWriter {
   };
 
   int AddConnection(const std::string& topic, const std::string& type, const std::string& md5sum,
-                    const std::string& definition);
+                    const std::string& definition, bool latched);
   std::uint8_t* BeginMessage(int topic, ros::Time time, std::uint32_t size);
   void WriteChunk();
   void WriteIndex();
