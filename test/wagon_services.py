@@ -88,8 +88,8 @@ class WagonServices(unittest.TestCase):
         self.assertEqual([detail.vehicle for detail in reply.record.details], [1])
 
     def test_wrong_version_and_digest_are_refused_with_both_values(self):
-        self.refused(self.configure(self.configure_request(protocol_version=7)),
-                     "the master speaks protocol version 7, this wagon node version %d" % ConfigureRequest.PROTOCOL_VERSION)
+        self.refused(self.configure(self.configure_request(protocol_version=99)),
+                     "the master speaks protocol version 99, this wagon node version %d" % ConfigureRequest.PROTOCOL_VERSION)
         self.refused(self.configure(self.configure_request(scenario_digest=1)),
                      "digest 0x0000000000000001, but has 0x%016x" % text_digest(self.scenario))
 

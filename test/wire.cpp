@@ -216,9 +216,9 @@ class LostAndFound : public testing::TestWithParam<int> {
       ranks_[rank].name = "/own/wagon_" + std::to_string(NextRun());
       StartProcess(rank);
     }
-    caller_ = GetParam() == 0 ? ltd_master::MakeAsynchronousCaller(ranks_)
+    caller_ = GetParam() == 0 ? ltd_master::MakeAsynchronousCaller(ranks_, run_)
                               : ltd_master::MakeBlockingCaller(ranks_, kVehicles);
-    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, NextRun(),
+    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run_,
                                                            train_dynamics::config::Write(scenario_.params));
     for (int rank = 0; rank < kVehicles; ++rank) Connect(rank);
     ltd_master::LateWatch watch = Watch(kSoon);
@@ -231,13 +231,11 @@ class LostAndFound : public testing::TestWithParam<int> {
     process_[rank] = std::make_unique<WagonProcess>(name.substr(name.rfind('/') + 1));
   }
   void Connect(int rank) {
-    const Clock::time_point end =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kSoon));
-    std::string why;
-    do {
-      why = caller_->Connect(rank);
-    } while (!why.empty() && Clock::now() < end);
-    ASSERT_EQ(why, "");
+    const Clock::time_point end = Clock::now() + std::chrono::seconds(60);
+    for (std::string why = caller_->Connect(rank); !why.empty(); why = caller_->Connect(rank)) {
+      ASSERT_LT(Clock::now(), end) << why;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
   }
   ltd_master::LateWatch Watch(double deadline_s) { return {ranks_, "test", deadline_s, interrupted_}; }
 
@@ -265,6 +263,7 @@ class LostAndFound : public testing::TestWithParam<int> {
 
   static constexpr int kOwn = 3;
   const LoadedScenario scenario_ = Load();
+  const std::uint64_t run_ = NextRun();
   const std::function<bool()> interrupted_ = [] { return false; };
   std::vector<Rank> ranks_ = RanksIn("/ranks_6", kVehicles);
   std::array<std::unique_ptr<WagonProcess>, kOwn> process_;

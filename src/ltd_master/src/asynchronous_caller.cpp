@@ -1,196 +1,212 @@
-#include <poll.h>
+#include <ros/console.h>
 #include <ros/service_manager.h>
 #include <ros/service_traits.h>
-#include <sys/epoll.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
-#include <system_error>
 
 #include "ltd_master/rank_caller.h"
 #include "ltd_master/service_link.h"
+#include "ltd_master/shared_slots.h"
 
 namespace ltd_master {
 namespace {
 
+using train_brake_msgs::Configure;
+using train_brake_msgs::Step;
 using train_dynamics::Rank;
 
 constexpr double kHandshake = 1.0;  // [s] for a node that has advertised to accept a connection
-constexpr int kWakesPerLook = 256;  // so that a trickle of bytes cannot outlast the deadline
 
-/// Links to one service of all ranks, waited for together.
-class FanOut {
+using Links = std::vector<std::unique_ptr<ServiceLink>>;  // [rank] null: not connected
+
+/// One call of all ranks: in the memory that some share with the master, through links to the others.
+template <class Service>
+class CallOfAll {
  public:
-  explicit FanOut(std::size_t ranks) : links_(ranks), epoll_(epoll_create1(EPOLL_CLOEXEC)) {
-    if (epoll_ < 0) throw std::system_error(errno, std::generic_category(), "epoll_create1");
-  }
-  ~FanOut() { close(epoll_); }
-  FanOut(const FanOut&) = delete;
-  FanOut& operator=(const FanOut&) = delete;
+  CallOfAll(Links& links, std::vector<Service>& calls, LateWatch& watch)
+      : links_(links), calls_(calls), watch_(watch), pending_(calls.size(), true) {}
 
-  /// @return why the service cannot be reached yet; empty: it is linked
-  template <class Service>
-  std::string Connect(int rank, const std::string& service) {
-    if (links_[rank] != nullptr) return "";
-    std::string host;
-    std::uint32_t port = 0;
-    if (!ros::ServiceManager::instance()->lookupService(service, host, port)) return "has not advertised";
-    try {
-      links_[rank] = std::make_unique<ServiceLink>(service, host, port,
-                                                   ros::service_traits::md5sum<Service>(), kHandshake);
-    } catch (const LinkRefused&) {
-      throw;
-    } catch (const LinkError& e) {
-      return e.what();
-    }
-    Watch(rank, EPOLL_CTL_ADD, EPOLLIN);
-    return "";
-  }
-
-  void Disconnect(int rank) { links_[rank].reset(); }
-
-  template <class Service>
-  CallOutcome Call(std::vector<Service>& calls, LateWatch& watch) {
-    pending_.assign(calls.size(), true);
-    outcome_ = {};
-    left_ = calls.size();
-    for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) {
-      Attempt(rank, [&] {
-        if (links_[rank] == nullptr) throw LinkError("is not connected");
-        if (!links_[rank]->Send(calls[rank].request)) Watch(rank, EPOLL_CTL_MOD, EPOLLIN | EPOLLOUT);
-      });
-    }
-    std::array<epoll_event, 64> events;
-    for (int wakes = 1; left_ > 0; ++wakes) {
-      const int count = epoll_wait(epoll_, events.data(), events.size(), kGlanceMs);
-      if ((count == 0 || wakes % kWakesPerLook == 0) && !watch.Look(pending_)) {
-        for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) {
-          if (pending_[rank]) Lose(rank, watch.NoReply());
-        }
-        break;
-      }
-      for (int i = 0; i < count; ++i) {
-        const int rank = static_cast<int>(events[i].data.u32);
-        Attempt(rank, [&] { Serve(rank, events[i].events, calls[rank].response); });
-      }
-    }
+  CallOutcome Run() {
+    for (int rank = 0; rank < ranks(); ++rank) SendByLink(rank);
+    while (!on_links_.empty()) AwaitLink();
     return outcome_;
   }
 
-  template <class Service>
-  void CallOne(int rank, Service& call, LateWatch& watch) {
-    if (links_[rank] == nullptr) throw LinkError("is not connected");
-    ServiceLink& link = *links_[rank];
-    std::vector<bool> pending(links_.size(), false);
-    pending[rank] = true;
-    bool is_sent = link.Send(call.request);
-    while (!is_sent || !link.Receive(call.response)) {
-      if (!link.Wait(is_sent ? POLLIN : POLLOUT, LateWatch::kGlance) && !watch.Look(pending)) {
-        throw LinkError(watch.NoReply());
+  CallOutcome Run(SharedSlots& slots) {
+    for (int rank = 0; rank < ranks(); ++rank) {
+      if (slots.Has(rank)) {
+        in_slots_.push_back(rank);
+      } else {
+        SendByLink(rank);
       }
-      if (!is_sent) is_sent = link.Flush();
     }
+    if (!in_slots_.empty()) CallSlots(slots);
+    while (!on_links_.empty()) AwaitLink();
+    return outcome_;
   }
 
  private:
-  static constexpr int kGlanceMs = static_cast<int>(1e3 * LateWatch::kGlance);
+  using Clock = std::chrono::steady_clock;
 
-  void Watch(int rank, int operation, std::uint32_t events) {
-    epoll_event event{};
-    event.events = events;
-    event.data.u32 = static_cast<std::uint32_t>(rank);
-    if (epoll_ctl(epoll_, operation, links_[rank]->descriptor(), &event) != 0) {
-      throw std::system_error(errno, std::generic_category(), "epoll_ctl");
+  int ranks() const { return static_cast<int>(calls_.size()); }
+
+  void SendByLink(int rank) {
+    Attempt(rank, [&] {
+      if (links_[rank] == nullptr) throw LinkError("is not connected");
+      links_[rank]->Send(calls_[rank].request);
+      on_links_.push_back(rank);
+    });
+  }
+
+  void CallSlots(SharedSlots& slots) {
+    slots.Send(calls_);
+    while (!in_slots_.empty()) {
+      slots.Wait(LateWatch::kGlance);
+      const auto is_over = [&](int rank) { return pending_[rank] ? ReadSlot(slots, rank) : true; };
+      in_slots_.erase(std::remove_if(in_slots_.begin(), in_slots_.end(), is_over), in_slots_.end());
+      Glance();
+    }
+    outcome_.last_rank = slots.last_rank();
+  }
+
+  /// @return whether nothing more is to be expected there
+  bool ReadSlot(const SharedSlots& slots, int rank) {
+    SharedSlots::Reply reply = SharedSlots::Reply::kNone;
+    Attempt(rank, [&] { reply = slots.Read(rank, calls_[rank].response); });
+    if (reply == SharedSlots::Reply::kRead) pending_[rank] = false;
+    if (reply == SharedSlots::Reply::kTooLarge) SendByLink(rank);  // which gives the same reply
+    return !pending_[rank] || reply == SharedSlots::Reply::kTooLarge;
+  }
+
+  /// Waits for the last rank of those that are left: they finish about in the order in which they were asked, so
+  /// most of the others have replied by then, and the master is not woken once for each.
+  void AwaitLink() {
+    const int rank = on_links_.back();
+    on_links_.pop_back();
+    ReadLink(rank);
+    while (pending_[rank]) {
+      links_[rank]->Wait(LateWatch::kGlance);
+      ReadLink(rank);
+      outcome_.last_rank = rank;
+      Glance();
     }
   }
 
-  /// Does something with a rank's link; who fails in it is lost.
+  void ReadLink(int rank) {
+    if (!pending_[rank]) return;
+    Attempt(rank, [&] { pending_[rank] = !links_[rank]->Receive(calls_[rank].response); });
+  }
+
+  /// Ten times a second of waiting: looks at all links, and at the watch.
+  void Glance() {
+    const Clock::time_point now = Clock::now();
+    if (now < next_glance_) return;
+    next_glance_ = now + kGlance;
+    for (const int rank : on_links_) ReadLink(rank);
+    for (const int rank : in_slots_) Attempt(rank, [&] { links_[rank]->ExpectSilence(); });
+    if (watch_.Look(pending_)) return;
+    for (int rank = 0; rank < ranks(); ++rank) {
+      if (pending_[rank]) Lose(rank, watch_.NoReply());
+    }
+  }
+
+  /// Does something with a rank; who fails in it is lost.
   template <class Action>
   void Attempt(int rank, Action action) {
     try {
       action();
-    } catch (const std::exception& e) {  // of the link, or of a reply that cannot be unpacked
+    } catch (const std::exception& e) {  // of the link, or of a reply that cannot be read
       Lose(rank, e.what());
     }
   }
 
   void Lose(int rank, const std::string& why) {
-    Disconnect(rank);
-    outcome_.lost.push_back({rank, why});
-    if (pending_[rank]) --left_;
+    links_[rank].reset();
     pending_[rank] = false;
+    outcome_.lost.push_back({rank, why});
   }
 
-  /// Moves bytes as far as they go.
-  template <class Response>
-  void Serve(int rank, std::uint32_t events, Response& response) {
-    ServiceLink& link = *links_[rank];
-    if ((events & EPOLLOUT) != 0 && link.Flush()) Watch(rank, EPOLL_CTL_MOD, EPOLLIN);
-    if ((events & ~static_cast<std::uint32_t>(EPOLLOUT)) == 0) return;
-    if (!pending_[rank]) {
-      link.ExpectSilence();
-    } else if (link.Receive(response)) {
-      pending_[rank] = false;
-      --left_;
-      outcome_.last_rank = rank;
-    }
-  }
+  static constexpr auto kGlance =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(LateWatch::kGlance));
 
-  std::vector<std::unique_ptr<ServiceLink>> links_;  ///< [rank] null: not connected
-  const int epoll_;
-  // Of the present call:
-  std::vector<bool> pending_;  ///< [rank] whether it has yet to reply
-  std::size_t left_ = 0;       ///< how many have
+  Links& links_;
+  std::vector<Service>& calls_;
+  LateWatch& watch_;
+  std::vector<bool> pending_;             ///< [rank] whether it has yet to reply
+  std::vector<int> in_slots_, on_links_;  ///< ranks whose replies are expected there
+  Clock::time_point next_glance_ = Clock::now() + kGlance;
   CallOutcome outcome_;
 };
 
 class AsynchronousCaller : public RankCaller {
  public:
-  explicit AsynchronousCaller(const std::vector<Rank>& ranks)
-      : ranks_(ranks), configure_(ranks.size()), step_(ranks.size()) {}
+  AsynchronousCaller(const std::vector<Rank>& ranks, std::unique_ptr<SharedSlots> slots)
+      : ranks_(ranks), configure_(ranks.size()), step_(ranks.size()), slots_(std::move(slots)) {}
 
   std::string Connect(int rank) override {
     const std::string& name = ranks_[rank].name;
-    try {
-      const std::string why = configure_.Connect<train_brake_msgs::Configure>(rank, name + "/configure");
-      return !why.empty() ? why : step_.Connect<train_brake_msgs::Step>(rank, name + "/step");
-    } catch (const LinkRefused& e) {
-      throw RankFailure(ranks_[rank], "connection", e.what());
-    }
+    const std::string why = Connect<Configure>(rank, name + "/configure", configure_[rank]);
+    return !why.empty() ? why : Connect<Step>(rank, name + "/step", step_[rank]);
   }
-
   void Disconnect(int rank) override {
-    configure_.Disconnect(rank);
-    step_.Disconnect(rank);
+    configure_[rank].reset();
+    step_[rank].reset();
+    if (slots_ != nullptr) slots_->Drop(rank);
   }
 
-  CallOutcome Call(std::vector<train_brake_msgs::Configure>& calls, LateWatch& watch) override {
-    return CallAll(configure_, calls, watch);
+  CallOutcome Call(std::vector<Configure>& calls, LateWatch& watch) override {
+    for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) Offer(rank, calls[rank]);
+    CallOutcome outcome = DisconnectLost(CallOfAll<Configure>(configure_, calls, watch).Run());
+    for (int rank = 0; rank < static_cast<int>(calls.size()); ++rank) Settle(rank, calls[rank]);
+    return outcome;
   }
-  CallOutcome Call(std::vector<train_brake_msgs::Step>& calls, LateWatch& watch) override {
-    return CallAll(step_, calls, watch);
+  CallOutcome Call(std::vector<Step>& calls, LateWatch& watch) override {
+    CallOfAll<Step> call(step_, calls, watch);
+    return DisconnectLost(slots_ != nullptr ? call.Run(*slots_) : call.Run());
   }
-  void CallOne(int rank, train_brake_msgs::Configure& call, LateWatch& watch) override {
-    CallOne(configure_, rank, call, watch);
+  void CallOne(int rank, Configure& call, LateWatch& watch) override {
+    Offer(rank, call);
+    CallByLink(configure_, rank, call, watch);
+    Settle(rank, call);
   }
-  void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) override {
-    CallOne(step_, rank, call, watch);
-  }
+  void CallOne(int rank, Step& call, LateWatch& watch) override { CallByLink(step_, rank, call, watch); }
 
  private:
   template <class Service>
-  CallOutcome CallAll(FanOut& links, std::vector<Service>& calls, LateWatch& watch) {
-    const CallOutcome outcome = links.Call(calls, watch);
+  std::string Connect(int rank, const std::string& service, std::unique_ptr<ServiceLink>& link) const {
+    if (link != nullptr) return "";
+    std::string host;
+    std::uint32_t port = 0;
+    if (!ros::ServiceManager::instance()->lookupService(service, host, port)) return "has not advertised";
+    try {
+      link = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Service>(),
+                                           kHandshake);
+    } catch (const LinkRefused& e) {
+      throw RankFailure(ranks_[rank], "connection", e.what());
+    } catch (const LinkError& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  CallOutcome DisconnectLost(CallOutcome outcome) {
     for (const LostRank& lost : outcome.lost) Disconnect(lost.rank);
     return outcome;
   }
 
   template <class Service>
-  void CallOne(FanOut& links, int rank, Service& call, LateWatch& watch) {
+  void CallByLink(const Links& links, int rank, Service& call, LateWatch& watch) {
     try {
-      links.CallOne(rank, call, watch);
+      if (links[rank] == nullptr) throw LinkError("is not connected");
+      ServiceLink& link = *links[rank];
+      std::vector<bool> pending(ranks_.size(), false);
+      pending[rank] = true;
+      link.Send(call.request);
+      while (!link.Receive(call.response)) {
+        if (!link.Wait(LateWatch::kGlance) && !watch.Look(pending)) throw LinkError(watch.NoReply());
+      }
     } catch (const WaitInterrupted&) {
       Disconnect(rank);
       throw;
@@ -200,14 +216,30 @@ class AsynchronousCaller : public RankCaller {
     }
   }
 
+  void Offer(int rank, Configure& call) {
+    if (slots_ != nullptr) slots_->Offer(rank, call.request);
+  }
+  void Settle(int rank, const Configure& call) {
+    if (slots_ != nullptr) slots_->Settle(rank, call.response);
+  }
+
   const std::vector<Rank> ranks_;
-  FanOut configure_, step_;
+  Links configure_, step_;
+  const std::unique_ptr<SharedSlots> slots_;  ///< null: all calls go through links
 };
 
 }  // namespace
 
-std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<Rank>& ranks) {
-  return std::make_unique<AsynchronousCaller>(ranks);
+std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<Rank>& ranks, std::uint64_t run_id) {
+  std::unique_ptr<SharedSlots> slots;
+  if (run_id != 0) {
+    try {
+      slots = std::make_unique<SharedSlots>(ranks, run_id);
+    } catch (const std::exception& e) {
+      ROS_DEBUG("no memory can be shared with wagon nodes: %s", e.what());
+    }
+  }
+  return std::make_unique<AsynchronousCaller>(ranks, std::move(slots));
 }
 
 }  // namespace ltd_master

@@ -110,10 +110,14 @@ void ServiceLink::ShakeHands(const std::string& service, const std::string& md5s
 }
 
 void ServiceLink::WaitFor(short events, double timeout_s, const char* what) const {
-  if (!Wait(events, timeout_s)) throw LinkError(std::string("does not ") + what);
+  if (!Poll(events, timeout_s)) throw LinkError(std::string("does not ") + what);
 }
 
-bool ServiceLink::Wait(short events, double timeout_s) const {
+bool ServiceLink::Wait(double timeout_s) const {
+  return Poll(written_ < out_.size() ? POLLOUT : POLLIN, timeout_s);
+}
+
+bool ServiceLink::Poll(short events, double timeout_s) const {
   pollfd entry{descriptor_, events, 0};
   return poll(&entry, 1, static_cast<int>(std::lround(1e3 * timeout_s))) > 0;
 }

@@ -7,7 +7,7 @@
 namespace wagon_node {
 namespace {
 
-constexpr double kTick = 0.25;              // [s] between two looks at whether there is a master
+constexpr double kTick = 0.25;  // [s] between two looks at whether there is a master, while nothing comes
 constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that waits for its first run
 
 std::string CallerOf(const ros::M_string& connection_header) {
@@ -39,7 +39,8 @@ WagonNode::WagonNode()
 }
 
 void WagonNode::Run() {
-  while (ros::ok() && !IsLeftAlone()) ros::WallDuration(kTick).sleep();
+  while (ros::ok() && (ServeSlot() || !IsLeftAlone())) {
+  }
   ros::shutdown();  // ends the thread that runs the callbacks, before what they use is destroyed
 }
 
@@ -52,6 +53,8 @@ bool WagonNode::Configure(ConfigureCall& call) {
     ROS_WARN("refused to be configured by %s: %s", caller.c_str(), call.response->message.c_str());
     return true;
   }
+  UseSlot(*call.request);
+  call.response->memory_used = slot_ != nullptr;
   session_ = call.connection_header;
   last_contact_ = Clock::now();
   publishers_.clear();
@@ -67,12 +70,53 @@ bool WagonNode::Configure(ConfigureCall& call) {
 
 bool WagonNode::Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  response = server_.Step(request);
+  response = Serve(request);
+  return true;
+}
+
+const train_brake_msgs::StepResponse& WagonNode::Serve(const train_brake_msgs::StepRequest& request) {
+  const train_brake_msgs::StepResponse& response = server_.Step(request);
   if (response.ok) {
     last_contact_ = Clock::now();
     Publish(response.record);
   } else {
     ROS_WARN("refused a step: %s", response.message.c_str());
+  }
+  return response;
+}
+
+/// Takes the offer of a master that has just configured this node, if it can.
+void WagonNode::UseSlot(const train_brake_msgs::ConfigureRequest& offer) {
+  const std::shared_ptr<SharedSlot> old = std::move(slot_);
+  slot_ = nullptr;
+  try {
+    if (offer.memory_pid != 0) slot_ = std::make_shared<SharedSlot>(offer);
+  } catch (const std::exception& e) {
+    ROS_DEBUG("shares no memory with the master: %s", e.what());
+  }
+  if (old != nullptr) old->Wake();
+  configured_.notify_one();
+}
+
+/// Waits for a call in the slot, and serves it. @return whether there was one
+bool WagonNode::ServeSlot() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const std::shared_ptr<SharedSlot> slot = slot_;
+  if (slot == nullptr) {
+    configured_.wait_for(lock, std::chrono::duration<double>(kTick));
+    return false;
+  }
+  lock.unlock();
+  if (!slot->Wait(kTick)) return false;
+  lock.lock();
+  if (slot != slot_) return true;  // the node has been configured once more
+  try {
+    slot->Read(request_);
+    slot->Reply(Serve(request_));
+  } catch (const std::exception& e) {
+    train_brake_msgs::StepResponse refusal;
+    refusal.message = std::string("the request cannot be read: ") + e.what();
+    slot->Reply(refusal);
   }
   return true;
 }

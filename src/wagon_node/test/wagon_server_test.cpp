@@ -335,7 +335,8 @@ TEST_F(WagonServerTest, RefusesConfigurationsThatDoNotFitAndStaysAsItWas) {
   }();
   const std::vector<std::pair<std::function<void(ConfigureRequest&)>, std::string>> wrong = {
       {[](auto& r) { r.protocol_version = 99; },
-       "the master speaks protocol version 99, this wagon node version 2: both must be of the same build"},
+       "the master speaks protocol version 99, this wagon node version " +
+           std::to_string(ConfigureRequest::PROTOCOL_VERSION) + ": both must be of the same build"},
       {[](auto& r) { r.scenario_digest = 0xabc; },
        "the scenario should have the digest 0x0000000000000abc, but has " + digest + " as it arrived"},
       {[](auto& r) { r.run_id = 0; }, "run_id is 0, which stands for no run"},

@@ -4,6 +4,7 @@
 #include <train_brake_msgs/Step.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,8 +45,11 @@ class RankCaller {
   virtual void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) = 0;
 };
 
-/// One thread, which speaks TCPROS with all ranks: requests go out before any reply is waited for.
-std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<train_dynamics::Rank>& ranks);
+/// One thread, which speaks TCPROS with all ranks: requests go out before any reply is waited for. Calls of Step
+/// to ranks on this machine go through memory that they share with this process, if they can.
+/// @param run_id  of the run that the memory is for; 0: share none
+std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<train_dynamics::Rank>& ranks,
+                                                   std::uint64_t run_id);
 
 /// A pool of threads, each of which calls one rank after the other through roscpp's ServiceClient.
 ///

@@ -26,6 +26,7 @@ struct RosTransportOptions {
   bool recover = true;                      ///< bring lost ranks back; false: the run ends with them
   double recovery_timeout_s = 60.0;         ///< for a lost rank to come back; 0: for ever
   std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
+  bool shared_memory = true;                ///< with ranks on the same machine; only asynchronous
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ros/serialization.h>
+#include <train_brake_msgs/bounded_stream.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -40,34 +41,32 @@ class ServiceLink {
 
   int descriptor() const { return descriptor_; }
 
-  /// Writes a request, as far as the socket takes it.
-  /// @return whether all is written; if not, Flush when the socket can be written to
+  /// Writes a request, as far as the socket takes it; Receive() writes the rest.
   template <class Request>
-  bool Send(const Request& request) {
+  void Send(const Request& request) {
     const std::uint32_t size = ros::serialization::serializationLength(request);
     out_.resize(sizeof size + size);
     ros::serialization::OStream stream(out_.data(), static_cast<std::uint32_t>(out_.size()));
     stream.next(size);
     stream.next(request);
     written_ = 0;
-    return Flush();
+    Flush();
   }
-  bool Flush();
 
   /// Reads a response, as far as it has come.
   /// @return whether it is complete
   template <class Response>
   bool Receive(Response& response) {
-    if (!Fill()) return false;
-    ros::serialization::IStream stream(in_.data() + kPrefix, static_cast<std::uint32_t>(expected_ - kPrefix));
-    stream.next(response);
+    if (!Flush() || !Fill()) return false;
+    train_brake_msgs::ReadMessage(in_.data() + kPrefix, static_cast<std::uint32_t>(expected_ - kPrefix),
+                                  response);
     received_ = 0;
     expected_ = kPrefix;
     return true;
   }
 
-  /// @return whether the socket can be read or written (POLLIN or POLLOUT) within that time
-  bool Wait(short events, double timeout_s) const;
+  /// @return whether the rest of the request can be written, or else a reply can be read, within that time
+  bool Wait(double timeout_s) const;
 
   /// Outside a call nothing comes. @throws LinkError if something does, such as the end of the connection
   void ExpectSilence() const;
@@ -78,8 +77,10 @@ class ServiceLink {
   void Connect(const std::string& host, std::uint32_t port, double timeout_s);
   void ShakeHands(const std::string& service, const std::string& md5sum, double timeout_s);
   void Close();
+  bool Poll(short events, double timeout_s) const;
   void WaitFor(short events, double timeout_s, const char* what) const;
   void ReadAll(std::uint8_t* data, std::size_t size, double timeout_s) const;
+  bool Flush();
   bool Fill();
 
   int descriptor_ = -1;

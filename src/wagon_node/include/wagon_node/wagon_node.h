@@ -8,10 +8,13 @@
 
 #include <boost/weak_ptr.hpp>
 #include <chrono>
+#include <condition_variable>
 #include <map>
+#include <memory>
 #include <mutex>
 
 #include "wagon_node/inline_callback_queue.h"
+#include "wagon_node/shared_slot.h"
 #include "wagon_node/wagon_server.h"
 
 namespace wagon_node {
@@ -22,6 +25,9 @@ namespace wagon_node {
 ///   publishes   wagon_NNN/state     its vehicles in full detail, at every record; in the node's namespace
 ///   parameters  ~threads            default 1
 ///               ~master_timeout_s   default 8: leave after so long without a master; 0: never
+///
+/// Calls of ~step come from roscpp's thread or, if the master is on the same machine, from memory that it
+/// shares: those are served by the thread that called Run().
 ///
 /// A master is there as long as the connection over which it configured this node is open, which costs
 /// nothing to watch and also holds for a master that is paused, stopped in a debugger or slow. A node that
@@ -50,6 +56,9 @@ class WagonNode {
 
   bool Configure(ConfigureCall& call);
   bool Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response);
+  const train_brake_msgs::StepResponse& Serve(const train_brake_msgs::StepRequest& request);
+  void UseSlot(const train_brake_msgs::ConfigureRequest& offer);
+  bool ServeSlot();
   void Publish(const train_brake_msgs::RankRecord& record);
   bool IsLeftAlone();
 
@@ -57,6 +66,9 @@ class WagonNode {
   ros::NodeHandle node_, private_;
   std::mutex mutex_;  ///< of what both roscpp's thread, which runs the callbacks, and Run() use
   WagonServer server_;
+  std::shared_ptr<SharedSlot> slot_;  ///< null: the master's calls of ~step come by TCP only
+  std::condition_variable configured_;
+  train_brake_msgs::StepRequest request_;   ///< in the slot
   boost::weak_ptr<ros::M_string> session_;  ///< header of the connection that configured the present run
   Clock::time_point last_contact_;
   Clock::time_point next_question_;  ///< to the ROS master

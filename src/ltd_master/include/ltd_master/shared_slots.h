@@ -1,0 +1,63 @@
+#pragma once
+
+#include <train_brake_msgs/Configure.h>
+#include <train_brake_msgs/Step.h>
+#include <train_brake_msgs/exchange_memory.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "train_dynamics/train/ranks.h"
+
+namespace ltd_master {
+
+/// The master's end of train_brake_msgs/exchange_memory.h: calls of Step to ranks on the same machine.
+///
+/// Whether a rank is on the same machine, only that rank can tell: it is offered a slot when it is configured,
+/// and either takes it or not.
+class SharedSlots {
+ public:
+  /// Slots for all ranks, and some for processes that replace those of lost ranks.
+  /// @throws std::exception if the system has no such memory
+  SharedSlots(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id);
+  ~SharedSlots();
+  SharedSlots(const SharedSlots&) = delete;
+  SharedSlots& operator=(const SharedSlots&) = delete;
+
+  /// Puts an offer into a request: the rank's slot, a new one for a new process. Without a slot left, none.
+  void Offer(int rank, train_brake_msgs::ConfigureRequest& request);
+  /// What the rank made of it.
+  void Settle(int rank, const train_brake_msgs::ConfigureResponse& response);
+  /// The rank's process is given up, and its slot with it.
+  void Drop(int rank);
+  bool Has(int rank) const { return ranks_[rank].is_used; }
+
+  /// Begins a call: writes the requests of all ranks that have slots, and wakes those ranks.
+  void Send(const std::vector<train_brake_msgs::Step>& calls);
+  /// Waits until all have replied, perhaps: Read() tells. At most for that time.
+  void Wait(double timeout_s);
+  enum class Reply { kNone, kRead, kTooLarge };
+  /// @throws std::exception if the reply cannot be read
+  Reply Read(int rank, train_brake_msgs::StepResponse& response) const;
+  /// The rank that replied last; -1: unknown.
+  int last_rank() const;
+
+ private:
+  static constexpr std::uint32_t kNoSlot = ~0u;
+  struct RankSlot {
+    std::uint32_t slot = kNoSlot;
+    bool is_used = false;
+  };
+
+  std::uint32_t NewSlot();
+
+  int descriptor_ = -1;
+  std::unique_ptr<train_brake_msgs::ExchangeMemory> memory_;
+  std::vector<RankSlot> ranks_;
+  std::uint32_t next_slot_ = 0;  ///< that nobody has had
+  std::uint64_t call_ = 0;       ///< number of the present one
+  std::uint32_t heard_ = 0;      ///< rings of the bell for replies
+};
+
+}  // namespace ltd_master
