@@ -4,6 +4,10 @@
 
 namespace ltd_master {
 
+using train_dynamics::ByteReader;
+using train_dynamics::Bytes;
+using train_dynamics::ByteWriter;
+
 BagRecorder::BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario)
     : bag_(file),
       state_topic_(bag_.AddTopic<train_brake_msgs::TrainState>("/train/state")),
@@ -14,6 +18,36 @@ BagRecorder::BagRecorder(const std::string& file, const train_dynamics::Scenario
   const int scenario_topic =
       bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
   bag_.Write(scenario_topic, ros::TIME_MIN, ScenarioMessage(scenario));
+}
+
+BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint)
+    : bag_(file, ByteReader(checkpoint).Block()) {
+  ByteReader reader(checkpoint);
+  reader.Block();  // the bag's
+  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
+    *topic = static_cast<int>(reader.Word());
+  }
+  initial_j_ = reader.Number();
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    const auto vehicle = static_cast<int>(reader.Word());
+    wagon_topic_[vehicle] = static_cast<int>(reader.Word());
+  }
+  reader.End();
+}
+
+Bytes BagRecorder::Checkpoint() {
+  ByteWriter writer;
+  writer.Add(bag_.Checkpoint());
+  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
+    writer.Add(static_cast<std::uint64_t>(topic));
+  }
+  writer.Add(initial_j_);
+  writer.Add(std::uint64_t{wagon_topic_.size()});
+  for (const auto& [vehicle, topic] : wagon_topic_) {
+    writer.Add(static_cast<std::uint64_t>(vehicle));
+    writer.Add(static_cast<std::uint64_t>(topic));
+  }
+  return writer.bytes();
 }
 
 void BagRecorder::Record(const train_dynamics::TrainRecord& record) {

@@ -29,7 +29,9 @@ enum Operation : std::uint8_t {
   kConnection = 7
 };
 
-using Bytes = std::vector<std::uint8_t>;
+using train_dynamics::ByteReader;
+using train_dynamics::Bytes;
+using train_dynamics::ByteWriter;
 
 void Append(Bytes& bytes, const std::string& text) { bytes.insert(bytes.end(), text.begin(), text.end()); }
 
@@ -86,6 +88,63 @@ BagWriter::BagWriter(const std::string& file)
     close(descriptor_);
     throw;
   }
+}
+
+BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
+    : file_(file), descriptor_(open((file + ".active").c_str(), O_WRONLY | O_CLOEXEC)), size_(0) {
+  if (descriptor_ < 0) Fail();
+  try {
+    ByteReader reader(checkpoint);
+    size_ = reader.Word();
+    for (std::uint64_t count = reader.Word(); count > 0; --count) {
+      Connection& connection = connections_.emplace_back();
+      connection.record = reader.Block();
+      connection.described = reader.Word() != 0;
+    }
+    for (std::uint64_t count = reader.Word(); count > 0; --count) {
+      Chunk& chunk = chunks_.emplace_back();
+      chunk.position = reader.Word();
+      chunk.begin.fromNSec(reader.Word());
+      chunk.end.fromNSec(reader.Word());
+      for (std::uint64_t counts = reader.Word(); counts > 0; --counts) {
+        const auto id = static_cast<std::uint32_t>(reader.Word());
+        chunk.counts[id] = static_cast<std::uint32_t>(reader.Word());
+        if (id >= connections_.size()) throw train_dynamics::SnapshotError("is damaged: no such topic");
+      }
+    }
+    reader.End();
+    if (std::filesystem::file_size(file + ".active") < size_) {
+      throw std::runtime_error(file + ".active is shorter than it was at the checkpoint");
+    }
+    if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) Fail();
+    WriteFileHeader(0, 0);
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+}
+
+Bytes BagWriter::Checkpoint() {
+  WriteChunk();
+  ByteWriter writer;
+  writer.Add(size_);
+  writer.Add(std::uint64_t{connections_.size()});
+  for (const Connection& connection : connections_) {
+    writer.Add(connection.record);
+    writer.Add(std::uint64_t{connection.described});
+  }
+  writer.Add(std::uint64_t{chunks_.size()});
+  for (const Chunk& chunk : chunks_) {
+    writer.Add(chunk.position);
+    writer.Add(chunk.begin.toNSec());
+    writer.Add(chunk.end.toNSec());
+    writer.Add(std::uint64_t{chunk.counts.size()});
+    for (const auto& [id, messages] : chunk.counts) {
+      writer.Add(std::uint64_t{id});
+      writer.Add(std::uint64_t{messages});
+    }
+  }
+  return writer.bytes();
 }
 
 BagWriter::~BagWriter() {

@@ -12,6 +12,9 @@
 namespace ltd_master {
 namespace {
 
+using train_dynamics::ByteReader;
+using train_dynamics::Bytes;
+using train_dynamics::ByteWriter;
 using train_dynamics::TrainRecord;
 using train_dynamics::WagonDetail;
 
@@ -40,6 +43,44 @@ CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
       history_,
       "time_s,mean_speed_kmh,lead_speed_kmh,tail_speed_kmh,mean_position_m,max_tension_n,max_compression_n,"
       "mean_cylinder_pressure_pa\n");
+}
+
+CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint) : folder_(folder) {
+  ByteReader reader(checkpoint);
+  const auto go_on = [&](const std::string& name) {
+    const std::filesystem::path file = folder / name;
+    const std::uint64_t size = reader.Word();
+    if (!std::filesystem::exists(file) || std::filesystem::file_size(file) < size) {
+      throw std::runtime_error(file.string() + " is shorter than it was at the checkpoint");
+    }
+    std::filesystem::resize_file(file, size);
+    return std::ofstream(file, std::ios::app);
+  };
+  history_ = go_on("train_history.csv");
+  pressures_ = go_on("pressures.csv");
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    const auto vehicle = static_cast<int>(reader.Word());
+    wagons_.emplace(vehicle, go_on(reader.Text() + ".csv"));
+  }
+  reader.End();
+}
+
+Bytes CsvRecorder::Checkpoint() {
+  ByteWriter writer;
+  const auto add = [&writer](std::ofstream& stream) {
+    stream.flush();
+    writer.Add(static_cast<std::uint64_t>(stream.tellp()));
+  };
+  add(history_);
+  add(pressures_);
+  writer.Add(std::uint64_t{wagons_.size()});
+  for (auto& [vehicle, stream] : wagons_) {
+    writer.Add(static_cast<std::uint64_t>(vehicle));
+    writer.Add(VehicleName(vehicle, static_cast<int>(speed_mps_.size())));
+    add(stream);
+  }
+  CheckAll();
+  return writer.bytes();
 }
 
 void CsvRecorder::Record(const TrainRecord& record) {

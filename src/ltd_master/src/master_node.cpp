@@ -45,11 +45,23 @@ double NonNegative(const ros::NodeHandle& parameters, const std::string& name, d
   return value;
 }
 
+/// Whether a parameter is the first of its two words, which is also its default.
+bool OneOf(const ros::NodeHandle& parameters, const char* name, const std::string& first,
+           const std::string& second) {
+  const std::string value = parameters.param<std::string>(name, first);
+  if (value != first && value != second) {
+    throw std::invalid_argument(
+        fmt::format("parameter {} must be {} or {}, got {}", name, first, second, value));
+  }
+  return value == first;
+}
+
 }  // namespace
 
 MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
   MasterOptions options;
-  if (!parameters.getParam("scenario", options.scenario)) {
+  options.resume = parameters.param<std::string>("resume", "");
+  if (options.resume.empty() && !parameters.getParam("scenario", options.scenario)) {
     throw std::invalid_argument("parameter scenario is missing: the scenario file to run");
   }
   options.vehicles = parameters.param("vehicles", 0);
@@ -64,29 +76,29 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
     options.overrides.push_back(fmt::format("detail_vehicles=[{}]", fmt::join(detail, ", ")));
   options.output.folder = parameters.param<std::string>("out", "");
   options.output.record_bag = parameters.param("record", true);
+  options.output.checkpoint_interval_s = NonNegative(parameters, "checkpoint_interval_s", 10.0);
+  options.output.on_write_error =
+      OneOf(parameters, "on_write_error", "stop", "go_on") ? OnWriteError::kStop : OnWriteError::kGoOn;
+  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
   options.real_time_factor = NonNegative(parameters, "real_time_factor", 0.0);
   options.start_paused = parameters.param("start_paused", false);
   options.startup_timeout_s = NonNegative(parameters, "startup_timeout_s", 60.0);
   options.exchange_timeout_s = NonNegative(parameters, "exchange_timeout_s", 30.0);
-  const std::string on_lost_node = parameters.param<std::string>("on_lost_node", "recover");
-  if (on_lost_node != "recover" && on_lost_node != "stop") {
-    throw std::invalid_argument("parameter on_lost_node must be recover or stop, got " + on_lost_node);
-  }
-  options.recover = on_lost_node == "recover";
+  options.recover = OneOf(parameters, "on_lost_node", "recover", "stop");
   options.recovery_timeout_s = NonNegative(parameters, "recovery_timeout_s", 60.0);
-  const std::string client = parameters.param<std::string>("client", "fan_out");
-  if (client != "fan_out" && client != "blocking") {
-    throw std::invalid_argument("parameter client must be fan_out or blocking, got " + client);
-  }
   constexpr int kBlockingThreads = 16;
-  options.blocking_threads = client == "blocking" ? kBlockingThreads : 0;
+  options.blocking_threads = OneOf(parameters, "client", "fan_out", "blocking") ? 0 : kBlockingThreads;
   options.exit_status_file = parameters.param<std::string>("exit_status_file", "");
   return options;
 }
 
 MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own)
     : options_(options),
-      scenario_(train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
+      resumed_(options.resume.empty()
+                   ? std::nullopt
+                   : std::make_optional(LoadResumedRun(options.resume, options.overrides))),
+      scenario_(resumed_ ? resumed_->scenario
+                         : train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
       control_(options.start_paused, options.real_time_factor),
       live_(node) {
   for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
@@ -95,7 +107,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
     throw std::invalid_argument(
         fmt::format("the launch file expects {} vehicles, but the train of {} has {}: launch "
                     "with vehicles:={}",
-                    options.vehicles, options.scenario, vehicles, vehicles));
+                    options.vehicles, resumed_ ? options.resume : options.scenario, vehicles, vehicles));
   }
   if (options.ranks < 0 || options.ranks > vehicles) {
     throw std::invalid_argument(fmt::format(
@@ -129,7 +141,7 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   transport.recovery_timeout_s = options_.recovery_timeout_s;
   constexpr double kSnapshotInterval = 1.0;  // [s] of simulated time
   transport.snapshot_exchanges = std::max(1L, std::lround(kSnapshotInterval / scenario.exchange_interval_s));
-  transport.interrupted = Ending;
+  transport.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
   auto ranks =
       std::make_unique<RosTransport>(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks),
                                      NewRunId(), train_dynamics::config::Write(scenario), transport);
@@ -140,17 +152,19 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
 
 int MasterNode::Run() {
   const train_dynamics::ScenarioParams& scenario = scenario_.params;
-  RunOutput output(options_.output, options_.scenario, scenario);
+  const std::unique_ptr<RunOutput> output =
+      resumed_ ? std::make_unique<RunOutput>(options_.output, *resumed_)
+               : std::make_unique<RunOutput>(options_.output, options_.scenario, scenario);
   const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
   TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
   train_dynamics::RunSummary summary(scenario);
   std::unique_ptr<Progress> progress;
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
-  master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
+  master.AddObserver([&](const TrainRecord& record) { output->Record(record); });
   master.AddObserver([&](const TrainRecord& record) { Publish(record); });
   master.AddObserver([&](const TrainRecord& record) {
     if (progress == nullptr)
-      progress = std::make_unique<Progress>(scenario.duration_s);  // the start-up is over
+      progress = std::make_unique<Progress>(scenario.duration_s, master.start_s());  // the start-up is over
     progress->Show(record.time_s, record.mean_speed_mps);
   });
 
@@ -159,7 +173,7 @@ int MasterNode::Run() {
   std::string fault;
   int exit_code = kSuccess;
   try {
-    Loop(master);
+    Loop(master, *output, summary);
     if (!master.Done()) exit_code = kInterrupted;
   } catch (const train_dynamics::SimulationFault& e) {
     fault = e.what();
@@ -183,7 +197,7 @@ int MasterNode::Run() {
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
   const std::string json = summary.Json(master, wall_s, exit_code == kInterrupted ? "" : fault);
   try {
-    output.Finish(master, json);
+    output->Finish(master, json);
   } catch (const std::exception& e) {
     exit_code = kFailure;
     fault = std::string("the results could not be written: ") + e.what();
@@ -200,15 +214,23 @@ int MasterNode::Run() {
   return exit_code;
 }
 
-void MasterNode::Loop(TrainMaster& master) {
-  using Clock = std::chrono::steady_clock;
-  master.Start();
+void MasterNode::Loop(TrainMaster& master, RunOutput& output, train_dynamics::RunSummary& summary) {
+  if (resumed_) {
+    summary.SetMemory(resumed_->checkpoint.summary);
+    initial_energy_j_ = summary.initial_energy_j();
+    master.Resume(resumed_->checkpoint);
+    simulated_s_ = master.time_s();
+  } else {
+    master.Start();
+  }
   Clock::time_point last_diagnostics = Clock::now();
-  double simulated_then_s = 0.0;
+  double simulated_then_s = master.time_s();
   while (!master.Done() && !Ending()) {
     if (control_.Admit(master.time_s())) {
       const Clock::time_point begin = Clock::now();
+      const bool leaves_checkpoint = output.AskForCheckpoint(master);
       master.Exchange();
+      if (leaves_checkpoint) output.KeepCheckpoint(master, summary);
       statistics_.Add(std::chrono::duration<double>(Clock::now() - begin).count());
       if (ranks_ != nullptr) {
         ++last_count_[ranks_->timing().last_rank];
@@ -226,6 +248,20 @@ void MasterNode::Loop(TrainMaster& master) {
       simulated_then_s = master.time_s();
       last_diagnostics = Clock::now();
     }
+  }
+  if (!master.Done()) EndWithCheckpoint(master, output, summary);
+}
+
+void MasterNode::EndWithCheckpoint(TrainMaster& master, RunOutput& output,
+                                   const train_dynamics::RunSummary& summary) {
+  constexpr std::chrono::seconds kPatience(2);
+  finishing_until_ = Clock::now() + kPatience;
+  for (bool is_kept = false; !is_kept && !master.Done();) {
+    constexpr bool kWanted = true;
+    is_kept = output.AskForCheckpoint(master, kWanted);
+    if (!is_kept && master.RecordIsNext()) return;  // none are kept
+    master.Exchange();
+    if (is_kept) output.KeepCheckpoint(master, summary);
   }
 }
 

@@ -26,6 +26,15 @@ void RecorderThread::Record(const train_dynamics::TrainRecord& record) {
   if (queued_ - recorded_ == kBatch) work_.notify_one();
 }
 
+void RecorderThread::Drain() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  draining_ = true;
+  work_.notify_one();
+  room_.wait(lock, [this] { return recorded_ == queued_ || error_ != nullptr; });
+  draining_ = false;
+  if (error_ != nullptr) std::rethrow_exception(error_);
+}
+
 void RecorderThread::Finish() {
   if (!thread_.joinable()) return;
   {
@@ -41,7 +50,7 @@ void RecorderThread::Work() {
   constexpr std::chrono::milliseconds kPatience{100};
   std::unique_lock<std::mutex> lock(mutex_);
   while (error_ == nullptr && !(ending_ && recorded_ == queued_)) {
-    work_.wait_for(lock, kPatience, [this] { return ending_ || queued_ - recorded_ >= kBatch; });
+    work_.wait_for(lock, kPatience, [this] { return draining_ || ending_ || queued_ - recorded_ >= kBatch; });
     const std::uint64_t end = queued_;
     std::uint64_t next = recorded_;
     std::exception_ptr error;

@@ -9,6 +9,7 @@
 
 #include "ltd_master/interrupt.h"
 #include "ltd_master/progress.h"
+#include "ltd_master/resume.h"
 #include "ltd_master/run_output.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
@@ -20,11 +21,19 @@ namespace {
 using train_dynamics::TrainRecord;
 using train_dynamics::config::LoadedScenario;
 
-LoadedScenario Load(const RunOptions& options) {
+void Print(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+std::vector<std::string> Overrides(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.model.empty()) overrides.push_back("model=" + options.model);
-  LoadedScenario scenario = train_dynamics::config::LoadScenario(options.scenario, overrides);
-  for (const std::string& warning : scenario.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  return overrides;
+}
+
+LoadedScenario Load(const RunOptions& options) {
+  LoadedScenario scenario = train_dynamics::config::LoadScenario(options.scenario, Overrides(options));
+  Print(scenario.warnings);
   return scenario;
 }
 
@@ -36,16 +45,17 @@ int Threads(const RunOptions& options, const train_dynamics::ScenarioParams& sce
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-}  // namespace
-
-int RunScenario(const RunOptions& options) {
-  const LoadedScenario scenario = Load(options);
+/// From time 0, or from a checkpoint, to the end.
+int Run(const LoadedScenario& scenario, const RunOptions& options,
+        const train_dynamics::TrainCheckpoint* checkpoint, RunOutput& output) {
   train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
                                               Threads(options, scenario.params));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
-  RunOutput output({options.out, true, options.csv}, options.scenario, scenario.params);
   train_dynamics::RunSummary summary(scenario.params);
-  Progress progress(scenario.params.duration_s);
+  const double start_s =
+      checkpoint == nullptr ? 0.0
+                            : scenario.params.exchange_interval_s * static_cast<double>(checkpoint->exchange);
+  Progress progress(scenario.params.duration_s, start_s);
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
   master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
@@ -53,8 +63,20 @@ int RunScenario(const RunOptions& options) {
   CatchInterrupts();
   std::string fault, write_error;
   try {
-    master.Start();
-    while (!master.Done() && Interrupt() == 0) master.Exchange();
+    if (checkpoint == nullptr) {
+      master.Start();
+    } else {
+      summary.SetMemory(checkpoint->summary);
+      master.Resume(*checkpoint);
+    }
+    // Interrupted, it goes on to the next record, of which there can be a checkpoint.
+    for (bool ending = false; !master.Done() && !ending;) {
+      const bool interrupted = Interrupt() != 0;
+      ending = interrupted && master.RecordIsNext();
+      const bool leaves_checkpoint = output.AskForCheckpoint(master, interrupted);
+      master.Exchange();
+      if (leaves_checkpoint) output.KeepCheckpoint(master, summary);
+    }
   } catch (const train_dynamics::SimulationFault& e) {
     fault = e.what();
   } catch (const std::exception& e) {  // of a recorder
@@ -84,6 +106,27 @@ int RunScenario(const RunOptions& options) {
     return kInterrupted;
   }
   return kSuccess;
+}
+
+}  // namespace
+
+int RunScenario(const RunOptions& options) {
+  const OutputOptions output_options = {
+      options.out,
+      true,
+      options.csv,
+      options.checkpoint_interval_s,
+      options.go_on_without_records ? OnWriteError::kGoOn : OnWriteError::kStop,
+      [](const std::string& what) { fmt::print(stderr, "\ntrain_sim: {}\n", what); }};
+  if (options.resume.empty()) {
+    const LoadedScenario scenario = Load(options);
+    RunOutput output(output_options, options.scenario, scenario.params);
+    return Run(scenario, options, nullptr, output);
+  }
+  const ResumedRun run = LoadResumedRun(options.resume, Overrides(options));
+  Print(run.scenario.warnings);
+  RunOutput output(output_options, run);
+  return Run(run.scenario, options, &run.checkpoint, output);
 }
 
 int CheckScenario(const RunOptions& options) {

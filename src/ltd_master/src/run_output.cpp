@@ -1,5 +1,9 @@
 #include "ltd_master/run_output.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <regex>
@@ -12,6 +16,9 @@ namespace ltd_master {
 namespace {
 
 namespace fs = std::filesystem;
+using train_dynamics::ScenarioParams;
+
+constexpr const char* kBag = "train.bag";
 
 /// First line of the config.yaml of a run: the mark of a folder that holds results of ours and nothing of the user's.
 constexpr const char* kMark =
@@ -21,7 +28,7 @@ fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolu
 
 bool IsResult(const std::string& name) {
   static const std::regex pattern(
-      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml)(\\.unfinished)?|"
+      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint)(\\.unfinished)?|"
       "(pressure_table|train_history|pressures|couplers|vehicles|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
@@ -51,7 +58,7 @@ void PrepareFolder(const fs::path& folder) {
 }
 
 /// Everything that a repetition of the run needs, so that it gives the same bits.
-void WriteResolvedConfig(train_dynamics::ScenarioParams scenario, const fs::path& folder) {
+void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
   if (!scenario.pressure_table.empty()) {
     fs::copy_file(scenario.pressure_table, folder / "pressure_table.csv",
                   fs::copy_options::overwrite_existing);
@@ -60,11 +67,23 @@ void WriteResolvedConfig(train_dynamics::ScenarioParams scenario, const fs::path
   WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + train_dynamics::config::Write(scenario));
 }
 
+/// What recorders write and go on with.
+bool IsRecord(const std::string& name) {
+  static const std::regex pattern("train\\.bag(\\.active)?|(train_history|pressures|wagon_[0-9]+)\\.csv");
+  return std::regex_match(name, pattern);
+}
+
+long CheckpointExchanges(const OutputOptions& options, const ScenarioParams& scenario) {
+  if (options.checkpoint_interval_s <= 0.0) return 0;
+  const double records = std::round(options.checkpoint_interval_s / scenario.record_interval_s);
+  return std::max(1L, std::lround(records)) * scenario.ExchangesPerRecord();
+}
+
 }  // namespace
 
 void WriteFile(const fs::path& file, const std::string& text) {
   const fs::path unfinished = file.string() + ".unfinished";
-  std::ofstream stream(unfinished);
+  std::ofstream stream(unfinished, std::ios::binary);
   stream << text;
   stream.close();
   if (!stream) throw std::runtime_error("cannot write " + file.string());
@@ -72,8 +91,11 @@ void WriteFile(const fs::path& file, const std::string& text) {
 }
 
 RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_file,
-                     const train_dynamics::ScenarioParams& scenario)
-    : folder_(options.folder) {
+                     const ScenarioParams& scenario)
+    : options_(options),
+      folder_(options.folder),
+      identity_(IdentityOf(scenario)),
+      checkpoint_exchanges_(CheckpointExchanges(options, scenario)) {
   if (folder_.empty()) return;
   for (const std::string& input : {scenario_file, scenario.pressure_table}) {
     if (!input.empty() && FolderOf(input) == fs::weakly_canonical(fs::absolute(folder_))) {
@@ -83,8 +105,43 @@ RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_f
   }
   PrepareFolder(folder_);
   WriteResolvedConfig(scenario, folder_);
-  if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / "train.bag").string(), scenario);
+  if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), scenario);
   if (options.csv) csv_ = std::make_unique<CsvRecorder>(folder_);
+  StartThread();
+}
+
+RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
+    : options_(options),
+      folder_(options.folder.empty() ? run.folder : fs::path(options.folder)),
+      identity_(IdentityOf(run.scenario.params)),
+      checkpoint_exchanges_(CheckpointExchanges(options, run.scenario.params)) {
+  const bool is_elsewhere = fs::weakly_canonical(folder_) != fs::weakly_canonical(run.folder);
+  if (run.is_branch && !is_elsewhere) {
+    throw std::invalid_argument(
+        "a run that is resumed with other values is a run of its own: give it a folder "
+        "of its own, other than " +
+        run.folder.string());
+  }
+  train_dynamics::ByteReader checkpoint(run.checkpoint.output);
+  const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
+  if (is_elsewhere) {
+    PrepareFolder(folder_);
+    WriteResolvedConfig(run.scenario.params, folder_);
+    for (const fs::directory_entry& entry : fs::directory_iterator(run.folder)) {
+      const std::string name = entry.path().filename().string();
+      if (!IsRecord(name)) continue;
+      fs::copy_file(entry.path(), folder_ / name, fs::copy_options::overwrite_existing);
+    }
+  }
+  for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
+  const fs::path bag_file = folder_ / kBag;
+  if (!bag.empty() && fs::exists(bag_file)) fs::rename(bag_file, bag_file.string() + ".active");
+  if (!bag.empty()) bag_ = std::make_unique<BagRecorder>(bag_file.string(), bag);
+  if (!csv.empty()) csv_ = std::make_unique<CsvRecorder>(folder_, csv);
+  StartThread();
+}
+
+void RunOutput::StartThread() {
   if (bag_ == nullptr && csv_ == nullptr) return;
   thread_ = std::make_unique<RecorderThread>([this](const train_dynamics::TrainRecord& record) {
     if (bag_ != nullptr) bag_->Record(record);
@@ -92,13 +149,50 @@ RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_f
   });
 }
 
+template <class Action>
+void RunOutput::Attempt(const Action& action) {
+  if (error_ != nullptr) return;
+  try {
+    action();
+  } catch (const std::exception& e) {
+    if (options_.on_write_error == OnWriteError::kStop) throw;
+    error_ = std::current_exception();
+    options_.complain(fmt::format("{}: the run goes on without records", e.what()));
+  }
+}
+
 void RunOutput::Record(const train_dynamics::TrainRecord& record) {
-  if (thread_ != nullptr) thread_->Record(record);
+  if (thread_ != nullptr) Attempt([&] { thread_->Record(record); });
+}
+
+bool RunOutput::AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted) const {
+  if (folder_.empty() || checkpoint_exchanges_ == 0 || error_ != nullptr || !master.RecordIsNext())
+    return false;
+  const auto next = static_cast<long>(master.exchange()) + 1;
+  if (!wanted && next % checkpoint_exchanges_ != 0 && next != master.exchanges()) return false;
+  master.AskForCheckpoint();
+  return true;
+}
+
+void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
+                               const train_dynamics::RunSummary& summary) {
+  Attempt([&] {
+    if (thread_ != nullptr) thread_->Drain();
+    train_dynamics::ByteWriter output;
+    output.Add(bag_ != nullptr ? bag_->Checkpoint() : train_dynamics::Bytes());
+    output.Add(csv_ != nullptr ? csv_->Checkpoint() : train_dynamics::Bytes());
+    train_dynamics::TrainCheckpoint checkpoint = master.Checkpoint();
+    checkpoint.scenario = identity_;
+    checkpoint.summary = summary.Memory();
+    checkpoint.output = output.bytes();
+    const train_dynamics::Bytes bytes = Encode(checkpoint);
+    WriteFile(folder_ / kCheckpointFile, std::string(bytes.begin(), bytes.end()));
+  });
 }
 
 void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json) {
   if (folder_.empty()) return;
-  std::exception_ptr error;
+  std::exception_ptr error = error_;
   const auto attempt = [&error](const auto& step) {
     try {
       step();

@@ -17,6 +17,7 @@ constexpr const char* kDescription =
     "\n"
     "  train_sim run config/scenarios/emergency.yaml --out results/emergency\n"
     "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
+    "  train_sim run --resume results/emergency\n"
     "  train_sim check my_scenario.yaml\n"
     "  train_sim modes config/vehicles/ore_wagon.yaml\n"
     "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
@@ -26,13 +27,15 @@ constexpr const char* kDescription =
     "down; 130 interrupted (what was simulated is saved and marked incomplete).";
 
 /// Options shared by the commands that read a file and change it.
-void AddInput(CLI::App* command, const char* name, const char* help, std::string& file,
-              std::vector<std::string>& overrides) {
-  command->add_option(name, file, help)->required();
+/// @return the file's option
+CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std::string& file,
+                      std::vector<std::string>& overrides) {
+  CLI::Option* input = command->add_option(name, file, help)->required();
   command
       ->add_option("--set", overrides,
                    "replace a value: --set path=value, e.g. train.connection.draft_gear.slack_m=0.02")
       ->allow_extra_args(false);
+  return input;
 }
 
 int Main(int argc, char** argv) {
@@ -46,7 +49,17 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
 
   CLI::App* run = app.add_subcommand("run", "simulate a scenario; the summary goes to the standard output");
-  AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides);
+  AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
+  run->add_option(
+      "--resume", options.resume,
+      "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
+      "--out: a what-if run from there");
+  run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
+                  "simulated time [s] between checkpoints in the folder of --out; 0: none")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  run->add_flag("--go-on-without-records", options.go_on_without_records,
+                "where results cannot be written: run to the end all the same, and end with 1");
   run->add_option("--model", options.model, "vehicle model; default: the scenario's")
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
   run->add_option("--out", options.out,
@@ -57,6 +70,10 @@ int Main(int argc, char** argv) {
   run->add_flag("--csv", options.csv,
                 "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
   run->callback([&] {
+    if (options.scenario.empty() == options.resume.empty())
+      throw CLI::ValidationError("SCENARIO", "give a scenario, or --resume DIR");
+    if (options.csv && !options.resume.empty())
+      throw CLI::ValidationError("--csv", "a run is resumed with the tables that it began with");
     if (options.csv && options.out.empty())
       throw CLI::ValidationError("--csv", "needs --out DIR to write into");
     command = [&] { return ltd_master::RunScenario(options); };
@@ -97,6 +114,9 @@ int main(int argc, char** argv) {
     return exit_code;
   } catch (const train_dynamics::config::Error& e) {
     fmt::print(stderr, "{}\n", e.what());
+    return ltd_master::kBadInput;
+  } catch (const std::invalid_argument& e) {
+    fmt::print(stderr, "train_sim: {}\n", e.what());
     return ltd_master::kBadInput;
   } catch (const std::exception& e) {
     fmt::print(stderr, "train_sim: {}\n", e.what());

@@ -84,7 +84,8 @@ TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
   const std::vector<Seen> tail(whole.seen.end() - static_cast<long>(resumed.seen.size()), whole.seen.end());
   EXPECT_EQ(tail.front().exchange, middle + whole.loaded.params.ExchangesPerRecord());
   EXPECT_TRUE(tail == resumed.seen);
-  EXPECT_EQ(whole.Summary(), resumed.Summary());
+  const auto after_times = [](const std::string& json) { return json.substr(json.find("\"complete\"")); };
+  EXPECT_EQ(after_times(whole.Summary()), after_times(resumed.Summary()));
 }
 
 INSTANTIATE_TEST_SUITE_P(

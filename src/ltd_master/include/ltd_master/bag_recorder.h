@@ -17,6 +17,10 @@ class BagRecorder {
   /// @throws std::system_error if the file cannot be made
   BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
 
+  /// Goes on with a bag that a checkpoint is of, see BagWriter.
+  BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint);
+  train_dynamics::Bytes Checkpoint();
+
   /// An observer of the run's TrainMaster. @throws std::system_error
   void Record(const train_dynamics::TrainRecord& record);
 
@@ -27,7 +31,7 @@ class BagRecorder {
   int WagonTopic(int vehicle, int vehicles);
 
   BagWriter bag_;
-  int state_topic_, forces_topic_, pressures_topic_, ledger_topic_;
+  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
   std::map<int, int> wagon_topic_;  ///< by vehicle
   double initial_j_ = 0.0;
   train_brake_msgs::TrainState state_;

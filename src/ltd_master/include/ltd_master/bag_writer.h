@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/train/byte_stream.h"
+
 namespace ltd_master {
 
 /// Writes messages into a bag (format 2.0, not compressed), one after the other.
@@ -22,6 +24,9 @@ class BagWriter {
  public:
   /// @throws std::system_error if the file cannot be made
   explicit BagWriter(const std::string& file);
+  /// Goes on with a bag that a checkpoint is of; what came after that is cut off.
+  /// @throws std::system_error, std::runtime_error if FILE.active is shorter than it was
+  BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
@@ -44,12 +49,15 @@ class BagWriter {
     if (chunk_.size() > kChunkThreshold) WriteChunk();
   }
 
+  /// Writes what has come so far. @return what a writer needs to go on behind it
+  train_dynamics::Bytes Checkpoint();
+
   /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit.
   /// @throws std::system_error if it lacks anything
   void Close();
 
  private:
-  using Bytes = std::vector<std::uint8_t>;
+  using Bytes = train_dynamics::Bytes;
   static constexpr std::size_t kChunkThreshold = 768 * 1024;
 
   struct Connection {

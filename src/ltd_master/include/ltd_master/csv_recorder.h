@@ -18,6 +18,9 @@ namespace ltd_master {
 class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
+  /// Goes on with tables that a checkpoint is of; what came after that is cut off.
+  CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint);
+  train_dynamics::Bytes Checkpoint();
 
   /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
   void Record(const train_dynamics::TrainRecord& record);

@@ -7,8 +7,10 @@
 #include <train_brake_msgs/StepExchanges.h>
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct MasterOptions {
   int ranks = 0;     ///< wagon nodes; 0 = the vehicles are in the master's own process
   std::vector<std::string> overrides;
   OutputOptions output;
+  std::string resume;  ///< folder of a run that goes on from its checkpoint
   double real_time_factor = 0.0;
   bool start_paused = false;
   double startup_timeout_s = 60.0;
@@ -58,7 +61,10 @@ class MasterNode {
 
  private:
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
-  void Loop(train_dynamics::TrainMaster& master);
+  void Loop(train_dynamics::TrainMaster& master, RunOutput& output, train_dynamics::RunSummary& summary);
+  /// Goes on to the next record, and leaves a checkpoint there, if that takes no time.
+  void EndWithCheckpoint(train_dynamics::TrainMaster& master, RunOutput& output,
+                         const train_dynamics::RunSummary& summary);
   void Publish(const train_dynamics::TrainRecord& record);
   void PublishClock(double simulated_s);
   void PublishDiagnostics(const train_dynamics::TrainMaster& master, const char* state);
@@ -70,7 +76,11 @@ class MasterNode {
   bool OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
                            train_brake_msgs::SetRealTimeFactor::Response& response);
 
+  using Clock = std::chrono::steady_clock;
+
   MasterOptions options_;
+  Clock::time_point finishing_until_;  ///< until then, an interruption does not end a wait
+  std::optional<ResumedRun> resumed_;
   train_dynamics::config::LoadedScenario scenario_;
   RunControl control_;
   RosTransport* ranks_ = nullptr;  ///< null: no wagon nodes

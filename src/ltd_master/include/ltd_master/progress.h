@@ -8,7 +8,8 @@ namespace ltd_master {
 /// to stderr.
 class Progress {
  public:
-  explicit Progress(double duration_s);
+  /// @param start_s  simulated time at which the run begins, later than 0 if it was resumed
+  explicit Progress(double duration_s, double start_s = 0.0);
   ~Progress() { Finish(); }
 
   /// Cheap enough for every record.
@@ -23,7 +24,7 @@ class Progress {
   void Print(double simulated_s, double mean_speed_mps, double wall_s);
 
   using Clock = std::chrono::steady_clock;
-  double duration_s_;
+  double duration_s_, start_s_;
   bool on_terminal_;
   bool line_open_ = false;
   double next_s_ = 0.0;  ///< terminal: wall time, else simulated time, of the next line

@@ -27,7 +27,9 @@ class RecorderThread {
   /// An observer of the run's TrainMaster. @throws what the recorder threw at an earlier record
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Returns when all records are recorded. @throws what the recorder threw, and only once
+  /// Returns when all records so far are recorded. @throws what the recorder threw
+  void Drain();
+  /// The same, for the last time. @throws what the recorder threw, and only once
   void Finish();
 
  private:
@@ -41,7 +43,7 @@ class RecorderThread {
   std::mutex mutex_;
   std::condition_variable work_, room_;
   std::uint64_t queued_ = 0, recorded_ = 0;  ///< so far
-  bool ending_ = false;
+  bool draining_ = false, ending_ = false;
   std::exception_ptr error_;
   std::thread thread_;
 };

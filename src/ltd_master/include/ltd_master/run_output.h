@@ -1,25 +1,40 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "ltd_master/bag_recorder.h"
 #include "ltd_master/csv_recorder.h"
 #include "ltd_master/recorder_thread.h"
+#include "ltd_master/resume.h"
+#include "train_dynamics/train/run_summary.h"
 
 namespace ltd_master {
+
+/// What happens when results cannot be written.
+enum class OnWriteError {
+  kStop,  ///< the run ends
+  kGoOn   ///< the run goes on to its end without records, and ends with an error
+};
 
 struct OutputOptions {
   std::string folder;  ///< empty: nothing is written
   bool record_bag = true;
   bool csv = false;
+  double checkpoint_interval_s = 10.0;  ///< of simulated time; 0: none
+  OnWriteError on_write_error = OnWriteError::kStop;
+  std::function<void(const std::string&)> complain = [](const std::string&) {
+  };  ///< at once, where the run goes on
 };
 
 /// The folder of a run's results.
 ///
 ///   config.yaml   the scenario with everything resolved, at once; runs again to the same bits
 ///   train.bag     the records as they come (and tables, if wanted)
+///   checkpoint    now and then, and at the end: where the run can be resumed
 ///   summary.json  at the end; its absence tells that the run was cut off
 class RunOutput {
  public:
@@ -28,18 +43,37 @@ class RunOutput {
   RunOutput(const OutputOptions& options, const std::string& scenario_file,
             const train_dynamics::ScenarioParams& scenario);
 
+  /// Goes on with the results of a run, or copies them, in a branch, to a folder of its own.
+  /// @param options  folder: empty for that of the run; must be another for a branch
+  RunOutput(const OutputOptions& options, const ResumedRun& run);
+
   RunOutput(const RunOutput&) = delete;
   RunOutput& operator=(const RunOutput&) = delete;
 
   /// An observer of the run's TrainMaster; the files are written by another thread.
-  /// @throws std::exception if an earlier record could not be written
+  /// @throws std::exception if an earlier record could not be written, unless the run is to go on
   void Record(const train_dynamics::TrainRecord& record);
+
+  /// Asks for a checkpoint where one is due at the end of the next exchange, or is `wanted` and possible there.
+  /// @return whether it does; then KeepCheckpoint comes after the exchange
+  bool AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted = false) const;
+  /// Replaces the folder's checkpoint, at once or not at all. @throws as Record
+  void KeepCheckpoint(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary);
 
   /// Completes all files that can be. @throws std::exception if one could not be written
   void Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json);
 
  private:
+  void StartThread();
+  /// Does something that writes; if that fails, acts as on_write_error tells.
+  template <class Action>
+  void Attempt(const Action& action);
+
+  OutputOptions options_;
   std::filesystem::path folder_;
+  std::string identity_;       ///< of the scenario, see IdentityOf
+  long checkpoint_exchanges_;  ///< from one to the next; 0: none
+  std::exception_ptr error_;   ///< the first, where the run goes on
   std::unique_ptr<BagRecorder> bag_;
   std::unique_ptr<CsvRecorder> csv_;
   std::unique_ptr<RecorderThread> thread_;  ///< ends before its recorders do

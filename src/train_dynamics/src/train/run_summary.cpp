@@ -95,8 +95,8 @@ void RunSummary::SetMemory(const std::vector<double>& memory) {
 
 std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
   const double simulated_s = master.time_s();
-  const double vehicle_steps =
-      static_cast<double>(master.exchange()) * scenario_.StepsPerExchange() * vehicles_;
+  const double own_s = simulated_s - master.start_s();  // of this process: without what it was resumed from
+  const double vehicle_steps = own_s / scenario_.dt_s * vehicles_;
   char digest[20];
   std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
   std::ostringstream json;
@@ -104,8 +104,9 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"model\": \"" << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << vehicles_
        << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
        << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
-       << ",\n  \"simulated_s\": " << Number(simulated_s) << ",\n  \"wall_s\": " << Number(wall_s)
-       << ",\n  \"real_time_factor\": " << Number(simulated_s / wall_s)
+       << ",\n  \"simulated_s\": " << Number(simulated_s)
+       << ",\n  \"resumed_at_s\": " << (master.start_s() > 0.0 ? Number(master.start_s()) : "null")
+       << ",\n  \"wall_s\": " << Number(wall_s) << ",\n  \"real_time_factor\": " << Number(own_s / wall_s)
        << ",\n  \"ns_per_vehicle_step\": " << Number(1e9 * wall_s / vehicle_steps)
        << ",\n  \"complete\": " << (master.Done() ? "true" : "false")
        << ",\n  \"fault\": " << (fault.empty() ? "null" : Quoted(fault))

@@ -1,5 +1,6 @@
 #include "train_dynamics/train/snapshot.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "train_dynamics/numeric/digest.h"
@@ -21,108 +22,53 @@ std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
   return digest.value();
 }
 
-class Writer {
- public:
-  explicit Writer(const char* mark) {
-    Add(mark, kWord);
-    Add(kFormatVersion);
-  }
-  void Add(std::uint64_t word) { Add(&word, sizeof word); }
-  void Add(const std::string& text) {
-    Add(std::uint64_t{text.size()});
-    Add(text.data(), text.size());
-  }
-  void Add(const std::vector<double>& numbers) {
-    Add(std::uint64_t{numbers.size()});
-    Add(numbers.data(), numbers.size() * sizeof(double));
-  }
-  std::vector<std::uint8_t> Finish() {
-    Add(Checksum(bytes_.data(), bytes_.size()));
-    return std::move(bytes_);
-  }
+ByteWriter Begin(const char* mark) {
+  ByteWriter writer;
+  writer.AddRaw(mark, kWord);
+  writer.Add(kFormatVersion);
+  return writer;
+}
 
- private:
-  void Add(const void* from, std::size_t size) {
-    const auto* bytes = static_cast<const std::uint8_t*>(from);
-    bytes_.insert(bytes_.end(), bytes, bytes + size);
-  }
-  std::vector<std::uint8_t> bytes_;
-};
+Bytes Finish(ByteWriter& writer) {
+  writer.Add(Checksum(writer.bytes().data(), writer.bytes().size()));
+  return writer.bytes();
+}
 
-class Reader {
- public:
-  /// @param what  "a checkpoint", for messages
-  Reader(const std::vector<std::uint8_t>& bytes, const char* mark, const std::string& what)
-      : at_(bytes.data()), left_(bytes.size()) {
-    if (left_ < kWord || std::memcmp(at_, mark, kWord) != 0) throw SnapshotError("is not " + what);
-    at_ += kWord;
-    left_ -= kWord;
-    const std::uint64_t version = Word();
-    if (version != kFormatVersion) {
-      throw SnapshotError("is " + what + " of format version " + std::to_string(version) +
-                          ", this program reads version " + std::to_string(kFormatVersion));
-    }
-    if (left_ < kWord) throw SnapshotError("is cut short");
-    std::uint64_t checksum = 0;
-    std::memcpy(&checksum, bytes.data() + bytes.size() - kWord, kWord);
-    if (checksum != Checksum(bytes.data(), bytes.size() - kWord)) {
-      throw SnapshotError("is damaged or cut short: its checksum is wrong");
-    }
-    left_ -= kWord;
+/// A reader of what stands between mark and checksum. @param what  "a checkpoint", for messages
+ByteReader ReaderOf(const Bytes& bytes, const char* mark, const std::string& what) {
+  constexpr std::size_t kHead = 2 * kWord;
+  if (bytes.size() < kWord || std::memcmp(bytes.data(), mark, kWord) != 0)
+    throw SnapshotError("is not " + what);
+  ByteReader head(bytes.data() + kWord, bytes.size() - kWord);
+  const std::uint64_t version = head.Word();
+  if (version != kFormatVersion) {
+    throw SnapshotError("is " + what + " of format version " + std::to_string(version) +
+                        ", this program reads version " + std::to_string(kFormatVersion));
   }
-  std::uint64_t Word() {
-    std::uint64_t word = 0;
-    Get(&word, 1, sizeof word);
-    return word;
+  if (bytes.size() < kHead + kWord) throw SnapshotError("is cut short");
+  const std::size_t end = bytes.size() - kWord;
+  if (ByteReader(bytes.data() + end, kWord).Word() != Checksum(bytes.data(), end)) {
+    throw SnapshotError("is damaged or cut short: its checksum is wrong");
   }
-  std::string Text() {
-    std::string text(Count(1), '\0');
-    Get(text.data(), text.size(), 1);
-    return text;
-  }
-  std::vector<double> Numbers() {
-    std::vector<double> numbers(Count(sizeof(double)));
-    Get(numbers.data(), numbers.size(), sizeof(double));
-    return numbers;
-  }
-  void End() const {
-    if (left_ != 0) throw SnapshotError("is damaged: it has more than it should");
-  }
-
- private:
-  /// Of an array that follows; no larger than what is left, so that nothing huge is allocated.
-  std::size_t Count(std::size_t element) {
-    const std::uint64_t count = Word();
-    if (count > left_ / element) throw SnapshotError("is cut short");
-    return count;
-  }
-  void Get(void* to, std::size_t count, std::size_t element) {
-    if (count > left_ / element) throw SnapshotError("is cut short");
-    if (count == 0) return;
-    std::memcpy(to, at_, count * element);
-    at_ += count * element;
-    left_ -= count * element;
-  }
-  const std::uint8_t* at_;
-  std::size_t left_;
-};
+  return {bytes.data() + kHead, end - kHead};
+}
 
 constexpr const char* kBlockMark = "TBBLOCK\n";
 constexpr const char* kTrainMark = "TBTRAIN\n";
 
 }  // namespace
 
-std::vector<std::uint8_t> Encode(const BlockSnapshot& snapshot) {
-  Writer writer(kBlockMark);
+Bytes Encode(const BlockSnapshot& snapshot) {
+  ByteWriter writer = Begin(kBlockMark);
   writer.Add(snapshot.exchange);
   writer.Add(snapshot.first);
   writer.Add(snapshot.count);
   writer.Add(snapshot.state);
-  return writer.Finish();
+  return Finish(writer);
 }
 
-BlockSnapshot DecodeBlockSnapshot(const std::vector<std::uint8_t>& bytes) {
-  Reader reader(bytes, kBlockMark, "a snapshot of vehicles");
+BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes) {
+  ByteReader reader = ReaderOf(bytes, kBlockMark, "a snapshot of vehicles");
   BlockSnapshot snapshot;
   snapshot.exchange = reader.Word();
   snapshot.first = reader.Word();
@@ -132,19 +78,20 @@ BlockSnapshot DecodeBlockSnapshot(const std::vector<std::uint8_t>& bytes) {
   return snapshot;
 }
 
-std::vector<std::uint8_t> Encode(const TrainCheckpoint& checkpoint) {
-  Writer writer(kTrainMark);
+Bytes Encode(const TrainCheckpoint& checkpoint) {
+  ByteWriter writer = Begin(kTrainMark);
   writer.Add(checkpoint.scenario);
   writer.Add(checkpoint.exchange);
   writer.Add(checkpoint.state_digest);
   writer.Add(checkpoint.vehicles);
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.summary);
-  return writer.Finish();
+  writer.Add(checkpoint.output);
+  return Finish(writer);
 }
 
-TrainCheckpoint DecodeTrainCheckpoint(const std::vector<std::uint8_t>& bytes) {
-  Reader reader(bytes, kTrainMark, "a checkpoint of a train");
+TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
+  ByteReader reader = ReaderOf(bytes, kTrainMark, "a checkpoint of a train");
   TrainCheckpoint checkpoint;
   checkpoint.scenario = reader.Text();
   checkpoint.exchange = reader.Word();
@@ -152,6 +99,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const std::vector<std::uint8_t>& bytes) {
   checkpoint.vehicles = reader.Numbers();
   checkpoint.connections = reader.Numbers();
   checkpoint.summary = reader.Numbers();
+  checkpoint.output = reader.Block();
   reader.End();
   return checkpoint;
 }

@@ -52,7 +52,7 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   forces_.SetMemory(checkpoint.connections);
   transport_.Resume(checkpoint.exchange, checkpoint.vehicles, reply_);
   last_speed_mps_ = reply_.speed_mps;
-  exchange_ = checkpoint.exchange;
+  exchange_ = first_exchange_ = checkpoint.exchange;
   digest_ = checkpoint.state_digest;
 }
 

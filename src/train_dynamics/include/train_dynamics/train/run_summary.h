@@ -20,6 +20,8 @@ class RunSummary {
   /// @param fault  why the run ended early; empty: it did not, or was interrupted
   std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
 
+  double initial_energy_j() const { return initial_energy_j_; }
+
   /// What the summary of the whole run needs to know of its beginning.
   std::vector<double> Memory() const;
   /// @throws SnapshotError if it is not such

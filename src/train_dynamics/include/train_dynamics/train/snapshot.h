@@ -1,16 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-namespace train_dynamics {
+#include "train_dynamics/train/byte_stream.h"
 
-/// Bytes that are not a snapshot, or not one that fits.
-class SnapshotError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+namespace train_dynamics {
 
 /// The state of a contiguous block of vehicles at the beginning of an exchange: all that their further motion
 /// depends on, but for their parameters.
@@ -24,21 +20,22 @@ struct BlockSnapshot {
 /// The state of a whole train and of its books at the beginning of an exchange. Vehicles are not tied to the
 /// ranks that they were in.
 struct TrainCheckpoint {
-  std::string scenario;             ///< config::Write(scenario)
+  std::string scenario;             ///< what it is of, word for word
   std::uint64_t exchange = 0;       ///< the next one; follows a record
   std::uint64_t state_digest = 0;   ///< chained over all records so far
   std::vector<double> vehicles;     ///< [vehicle][number], see VehicleBlock::Save
   std::vector<double> connections;  ///< InTrainForces::Memory
   std::vector<double> summary;      ///< RunSummary::Memory
+  Bytes output;                     ///< what the recorders of the run need to go on
 };
 
 /// As bytes: a mark, the format's version, the contents (little-endian, counts before arrays), a checksum.
-std::vector<std::uint8_t> Encode(const BlockSnapshot& snapshot);
-std::vector<std::uint8_t> Encode(const TrainCheckpoint& checkpoint);
+Bytes Encode(const BlockSnapshot& snapshot);
+Bytes Encode(const TrainCheckpoint& checkpoint);
 
 /// @throws SnapshotError if the bytes are something else, of another version, cut short or damaged
-BlockSnapshot DecodeBlockSnapshot(const std::vector<std::uint8_t>& bytes);
-TrainCheckpoint DecodeTrainCheckpoint(const std::vector<std::uint8_t>& bytes);
+BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes);
+TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes);
 
 /// Collects numbers; of a list of fields that is written once for saving and for restoring.
 class MemoryWriter {

@@ -63,10 +63,13 @@ class TrainMaster {
   /// One exchange: the train moves on by one exchange interval.
   /// @throws SimulationFault naming the vehicle, the quantity and the time
   void Exchange();
-  bool Done() const { return static_cast<long>(exchange_) >= scenario_.Exchanges(); }
+  long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run
+  bool Done() const { return static_cast<long>(exchange_) >= exchanges(); }
 
   double time_s() const { return static_cast<double>(exchange_) * scenario_.exchange_interval_s; }
   std::uint64_t exchange() const { return exchange_; }
+  /// When this run began: later than 0 if it was resumed.
+  double start_s() const { return static_cast<double>(first_exchange_) * scenario_.exchange_interval_s; }
   const InTrainForces& in_train_forces() const { return forces_; }
   std::uint64_t state_digest() const { return digest_; }
 
@@ -77,7 +80,7 @@ class TrainMaster {
   Transport& transport_;
   PressureSource pressures_;
   InTrainForces forces_;
-  std::uint64_t exchange_ = 0;
+  std::uint64_t exchange_ = 0, first_exchange_ = 0;
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
   ExchangeReply reply_;

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/train/snapshot.h"
+
+namespace ltd_master {
+
+/// The file of a run's folder that holds its last checkpoint.
+inline constexpr const char* kCheckpointFile = "checkpoint";
+
+/// What a checkpoint is of: the resolved scenario as text, with a digest in place of its pressure table's name.
+/// Runs of equal text are the same run, bit for bit.
+std::string IdentityOf(const train_dynamics::ScenarioParams& scenario);
+
+/// A run that goes on from the checkpoint in its folder.
+struct ResumedRun {
+  std::filesystem::path folder;
+  train_dynamics::config::LoadedScenario scenario;
+  train_dynamics::TrainCheckpoint checkpoint;
+  bool is_branch;  ///< the scenario differs from that of the checkpoint: another run, with results of its own
+};
+
+/// Reads folder/config.yaml and folder/checkpoint.
+///
+/// @param overrides  "path=value": makes it a branch, unless they change nothing. Driver commands, friction,
+///                   duration, ... may change; what the state is of or counts by may not: the model, the train's
+///                   vehicles and connections, the times dt_s, exchange_, record_ and ledger_interval_s.
+/// @throws std::invalid_argument if there is nothing to resume or it does not fit; config::Error
+ResumedRun LoadResumedRun(const std::filesystem::path& folder, const std::vector<std::string>& overrides);
+
+}  // namespace ltd_master
