@@ -12,7 +12,7 @@ struct SinCos {
 /// Sine and cosine of an angle in turns (1 turn = 2 pi rad), the same bits on every machine.
 ///
 /// Reduction to an eighth of a turn, then the Taylor series to x^16; absolute error below 2e-16. Exact at
-/// multiples of a quarter turn.
+/// multiples of a quarter turn; NaN for what is not finite.
 inline SinCos SinCosTurns(double turns) {
   const double quarter = std::round(4.0 * turns);
   const double x = 6.283185307179586476925 * (turns - 0.25 * quarter);
@@ -24,16 +24,11 @@ inline SinCos SinCosTurns(double turns) {
   }
   sin = x * (1.0 + sin);
   cos = 1.0 + cos;
-  switch (static_cast<int>(quarter - 4.0 * std::floor(0.25 * quarter))) {
-    case 1:
-      return {cos, -sin};
-    case 2:
-      return {-sin, -cos};
-    case 3:
-      return {-cos, sin};
-    default:
-      return {sin, cos};
-  }
+  const double quarter_of_four = quarter - 4.0 * std::floor(0.25 * quarter);
+  if (quarter_of_four == 1.0) return {cos, -sin};
+  if (quarter_of_four == 2.0) return {-sin, -cos};
+  if (quarter_of_four == 3.0) return {-cos, sin};
+  return {sin, cos};
 }
 
 /// Sine and cosine of an angle in degrees.
