@@ -34,6 +34,7 @@ void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
   Copy(record.vehicles.shoe_force_n, message.shoe_force_n);
   Copy(record.vehicles.wheel_force_n, message.wheel_force_n);
   Copy(record.vehicles.creepage, message.creepage);
+  message.vehicle_digest = record.vehicles.state_digest;
   message.state_digest = record.state_digest;
 }
 
