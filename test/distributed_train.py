@@ -65,6 +65,12 @@ def train_sim(*arguments, scenario=SHORT_TRAIN):
     return json.loads(done.stdout)
 
 
+def verify(recording):
+    done = subprocess.run(["rosrun", "ltd_master", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
 def wagon_nodes():
     """Process numbers of the wagon nodes that run on this machine under this test's ROS master."""
     master = ("ROS_MASTER_URI=" + os.environ["ROS_MASTER_URI"]).encode()
@@ -142,6 +148,8 @@ class DistributedTrain(unittest.TestCase):
             for (topic, a, t), (other_topic, b, u) in zip(ours.read_messages(raw=True), theirs.read_messages(raw=True)):
                 self.assertEqual((other_topic, u), (topic, t))
                 self.assertEqual(b[1], a[1], topic)  # serialised
+        code, verdict = verify(launch.out)
+        self.assertEqual(0, code, verdict)
 
     def test_pause_step_resume_and_topics(self):
         clock, states, diagnostics = [], [], []
@@ -231,7 +239,8 @@ class DistributedTrain(unittest.TestCase):
 
     def test_rosbag_record_works_beside(self):
         bag = pathlib.Path(self.folder.name) / "beside.bag"
-        recorder = subprocess.Popen(["rosbag", "record", "-q", "-O", str(bag), "/train/state", "__name:=beside"],
+        topics = ["/train/" + t for t in ("state", "scenario", "in_train_forces", "energy_ledger", "wagon_004/state")]
+        recorder = subprocess.Popen(["rosbag", "record", "-q", "-O", str(bag), *topics, "__name:=beside"],
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         # Three seconds: a recorder starts with the first message after the first /clock, and takes a moment.
         launch = self.launch("nodes:=2", "start_paused:=true", "real_time_factor:=1", "set:=duration_s=3")
@@ -249,6 +258,8 @@ class DistributedTrain(unittest.TestCase):
         with rosbag.Bag(str(bag)) as recorded:
             last = [m for _, m, _ in recorded.read_messages("/train/state")][-1]
         self.assertEqual(launch.summary()["state_digest"], "%016x" % last.state_digest)
+        code, verdict = verify(bag)  # by the scenario that it holds; it begins late, and may lack messages
+        self.assertEqual(0, code, verdict)
 
     def test_a_missing_rank_is_named(self):
         """The launch file deals the train to two nodes, the master expects three."""

@@ -37,19 +37,21 @@ LoadedScenario Load(const RunOptions& options) {
   return scenario;
 }
 
-/// As asked for; else one per core for the 2D model, and one for LTD, whose exchanges are shorter than a
-/// wake-up.
-int Threads(const RunOptions& options, const train_dynamics::ScenarioParams& scenario) {
-  if (options.threads > 0) return options.threads;
+}  // namespace
+
+int Threads(int asked, const train_dynamics::ScenarioParams& scenario) {
+  if (asked > 0) return asked;
   if (scenario.model != train_dynamics::VehicleModel::kTwoD) return 1;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
+
+namespace {
 
 /// From time 0, or from a checkpoint, to the end.
 int Run(const LoadedScenario& scenario, const RunOptions& options,
         const train_dynamics::TrainCheckpoint* checkpoint, RunOutput& output) {
   train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
-                                              Threads(options, scenario.params));
+                                              Threads(options.threads, scenario.params));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
   train_dynamics::RunSummary summary(scenario.params);
   const double start_s =

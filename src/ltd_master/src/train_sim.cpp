@@ -8,6 +8,7 @@
 
 #include "ltd_master/run_command.h"
 #include "ltd_master/vehicle_commands.h"
+#include "ltd_master/verify_command.h"
 #include "train_dynamics/config/error_list.h"
 
 namespace {
@@ -19,12 +20,16 @@ constexpr const char* kDescription =
     "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
     "  train_sim run --resume results/emergency\n"
     "  train_sim check my_scenario.yaml\n"
+    "  train_sim verify results/emergency\n"
     "  train_sim modes config/vehicles/ore_wagon.yaml\n"
     "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
     "\n"
     "Exit codes: 0 done; 1 a result could not be written; 2 bad arguments or configuration; 3 the simulation "
     "broke\n"
-    "down; 130 interrupted (what was simulated is saved and marked incomplete).";
+    "down; 130 interrupted (what was simulated is saved and marked incomplete). Of verify: 0 the same; 5 "
+    "different; 6 "
+    "nothing\n"
+    "can be told; 7 the same as far as the recording goes.";
 
 /// Options shared by the commands that read a file and change it.
 /// @return the file's option
@@ -82,6 +87,17 @@ int Main(int argc, char** argv) {
   CLI::App* check = app.add_subcommand("check", "check a scenario with all its parts and print what it is");
   AddInput(check, "SCENARIO", "scenario file", options.scenario, options.overrides);
   check->callback([&] { command = [&] { return ltd_master::CheckScenario(options); }; });
+
+  ltd_master::VerifyOptions recording;
+  CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");
+  verify->add_option("DIR_OR_BAG", recording.recording, "folder of a run, or bag, also of rosbag record")
+      ->required();
+  verify->add_option("--config", recording.config,
+                     "scenario of the run; default: the folder's or the bag's own");
+  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several");
+  verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")
+      ->check(CLI::Range(1, 1024));
+  verify->callback([&] { command = [&] { return ltd_master::Verify(recording); }; });
 
   CLI::App* modes =
       app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");

@@ -8,6 +8,7 @@ import csv
 import json
 import os
 import pathlib
+import random
 import resource
 import signal
 import subprocess
@@ -17,7 +18,9 @@ import time
 import unittest
 
 import rosbag
+import rospy
 import rosunit
+from std_msgs.msg import String
 
 TRAIN_SIM, CONFIG = sys.argv[1], pathlib.Path(sys.argv[2])
 EMERGENCY = str(CONFIG / "scenarios" / "emergency.yaml")
@@ -292,6 +295,155 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("vehicle 1", summary["fault"])
         with rosbag.Bag(str(self.out / "train.bag")) as bag:
             self.assertGreater(bag.get_message_count("/train/state"), 0)
+
+    def verify(self, recording, *arguments, code):
+        done = train_sim("verify", recording, *arguments)
+        self.assertEqual(code, done.returncode, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def rewrite(self, bag, change):
+        """A copy of a bag, each message as change(topic, message) gives it, or without it where that is None."""
+        copy = pathlib.Path(self.folder.name) / "copy.bag"
+        with rosbag.Bag(str(bag)) as original, rosbag.Bag(str(copy), "w") as changed:
+            for topic, message, t in original.read_messages():
+                kept = change(topic, message)
+                if kept is not None:
+                    changed.write(*kept, t)
+        return copy
+
+    def test_verify_tells_the_same(self):
+        digest = self.run_ok(EMERGENCY, "--out", self.out, *SHORT)["state_digest"]
+        expected = f"same: 51 of 51 records of 242 vehicles to 0.5 s, digest {digest}\n"
+        for threads in (1, 2):
+            self.assertIn(expected, self.verify(self.out, "--threads", threads, code=0))
+        alone = self.out.rename(pathlib.Path(self.folder.name) / "elsewhere") / "train.bag"
+        (alone.parent / "config.yaml").unlink()
+        self.assertIn(expected, self.verify(alone, code=0))  # by the scenario that the bag holds
+
+    def test_verify_takes_bags_of_others(self):
+        """Another namespace, no scenario, topics left out, the beginning missed: the digest covers all before it."""
+        self.run_ok(EMERGENCY, "--out", self.out, *SHORT)
+
+        def late(topic, message):
+            keeps = topic in ("/train/state", "/train/wagon_100/state") and message.exchange >= 200
+            return (topic.replace("/train", "/line/7"), message) if keeps else None
+
+        bag = self.rewrite(self.out / "train.bag", late)
+        self.assertIn("give it with --config", self.verify(bag, code=6))
+        verdict = self.verify(bag, "--config", self.out / "config.yaml", code=0)
+        self.assertIn("same: 31 of 51 records", verdict)
+        self.assertIn("the digest covers those that are not in the bag", verdict)
+
+        def twins(topic, message):
+            return (topic.replace("/train", "/b"), message) if topic.endswith("forces") else (topic, message)
+
+        with rosbag.Bag(str(self.rewrite(self.out / "train.bag", twins)), "a") as both:
+            for _, message, t in rosbag.Bag(str(self.out / "train.bag")).read_messages("/train/state"):
+                both.write("/b/state", message, t)
+        self.assertIn("/b, /train; choose one with --train", self.verify(both.filename, code=6))
+        self.assertIn("holds no train /c but", self.verify(both.filename, "--train", "/c", code=6))
+        self.verify(both.filename, "--train", "/b", "--config", self.out / "config.yaml", code=0)
+
+    def test_verify_names_the_first_difference(self):
+        self.run_ok(EMERGENCY, "--out", self.out, *SHORT)
+        bag, config = self.out / "train.bag", self.out / "config.yaml"
+
+        def spoilt(at, field, index, value):
+            def change(topic, message):
+                if topic == at and message.exchange >= 300:
+                    array = list(getattr(message, field))
+                    array[index] = value
+                    setattr(message, field, array)
+                return topic, message
+            return self.rewrite(bag, change)
+
+        for at, field, index, where in (
+                ("/train/wagon_100/state", "body_z_mps", 1, "vehicle 100, front bolster: body_z_mps"),
+                ("/train/wagon_242/state", "creep_force_n", 3, "vehicle 242, wheelset 4: creep_force_n"),
+                ("/train/wagon_242/state", "wedge_force_n", 2, "vehicle 242, rear bogie, front half: wedge_force_n"),
+                ("/train/state", "position_m", 7, "vehicle 8: position_m"),
+                ("/train/in_train_forces", "coupler_force_n", 99, "connection 100: coupler_force_n"),
+                ("/train/brake_pressures", "cylinder_pressure_pa", 0, "vehicle 1: cylinder_pressure_pa")):
+            verdict = self.verify(spoilt(at, field, index, 12345.5), code=5)
+            self.assertIn(f"{where} is 12345.5 in the bag, ", verdict)
+            self.assertIn("0.3 s (exchange 300)", verdict)
+            self.assertIn("0 of 242 vehicles differ in it; the 30 records before it are the same", verdict)
+        verdict = self.verify(spoilt("/train/state", "vehicle_digest", 41, 7), code=5)
+        self.assertIn("vehicle 42: its state, but no recorded value", verdict)
+        self.assertIn("1 of 242 vehicles differ", verdict)
+
+        def change_setting(before, after):
+            text = config.read_text()
+            self.assertIn(before, text)
+            return self.write("other.yaml", text.replace(before, after))
+
+        for before, after, complaint in (
+                ("initial_speed_kmh: 80", "initial_speed_kmh: 80.0000001", "vehicle 1, carbody: body_x_mps is"),
+                ("record_interval_s: 0.01", "record_interval_s: 0.02", "message of exchange 10, of which there is none now"),
+                ("duration_s: 0.5", "duration_s: 0.4", "different: the bag goes on after the end at 0.4 s"),
+                ("    count: 1\n", "    count: 2\n", "position_m is of size 242 in the bag, 244 now")):
+            verdict = self.verify(bag, "--config", change_setting(before, after), code=5)
+            self.assertIn(complaint, verdict)
+        self.verify(bag, "--config", change_setting("detail_vehicles: [1, 100,", "detail_vehicles: ["), code=0)
+
+    def test_verify_an_incomplete_run(self):
+        self.run_ok(EMERGENCY, "--out", self.out, *SHORT)
+        cut = self.rewrite(self.out / "train.bag", lambda topic, message: (
+            (topic, message) if getattr(message, "exchange", 0) <= 200 else None))
+        self.assertIn("incomplete: the bag ends at 0.2 s of 0.5 s; the same so far, 21 records", self.verify(cut, code=7))
+        broken = pathlib.Path(self.folder.name) / "broken"
+        train_sim("run", DIP, "--out", broken, "--set", "initial_speed_kmh=400", "--set", "track.dips[0].depth_m=1",
+                  "--set", "track.dips[0].length_m=2")
+        self.assertIn("the same so far", self.verify(broken, code=7))
+
+    def test_verify_what_cannot_be_read(self):
+        self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
+        bag = self.out / "train.bag"
+        whole = bag.read_bytes()
+        self.assertIn("there is no such file or folder", self.verify(self.out / "none", code=6))
+        self.assertIn("Error reading version line", self.verify(DIP, code=6))
+        self.assertIn("holds no train", self.verify(self.rewrite(bag, lambda *_: ("/x", String("y"))), code=6))
+        bag.write_bytes(whole[:len(whole) // 2])
+        self.assertIn("it is no whole bag", self.verify(self.out, code=6))
+        bag.rename(self.out / "train.bag.active")
+        self.assertIn("the run was cut off", self.verify(self.out, code=6))
+        (self.out / "train.bag.active").unlink()
+        self.assertIn("holds no train.bag", self.verify(self.out, code=6))
+        bag.write_bytes(whole)
+        (self.out / "config.yaml").write_text("dt_s: fast\n")
+        self.assertIn("config.yaml:1: dt_s must be a number", self.verify(self.out, code=6))
+
+    def test_verify_two_runs_in_a_bag(self):
+        self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
+        bag = self.out / "train.bag"
+        with rosbag.Bag(str(bag)) as original:
+            messages = list(original.read_messages("/train/state"))
+        with rosbag.Bag(str(bag), "a") as twice:
+            for topic, message, t in messages:
+                twice.write(topic, message, t + rospy.Duration(1.0))
+        self.assertIn("falls from exchange 100 to 0: the bag holds more than one run", self.verify(self.out, code=6))
+
+    def test_verify_survives_damaged_bags(self):
+        """Any verdict will do, a crash will not: bytes changed, numbers blown up, pieces cut out, the end cut off."""
+        self.run_ok(DIP, "--model", "ltd", "--out", self.out, "--set", "duration_s=0.05")
+        whole = (self.out / "train.bag").read_bytes()
+        for seed in range(60):
+            chance, bag = random.Random(seed), bytearray(whole)
+            for _ in range(chance.choice([1, 1, 2, 5])):
+                at = chance.randrange(len(bag))
+                damage = chance.randrange(4)
+                if damage == 0:
+                    bag[at] = chance.randrange(256)
+                elif damage == 1:
+                    bag[at:at + 4] = chance.choice([0, 1000, 2**31 - 1, 2**32 - 1]).to_bytes(4, "little")
+                elif damage == 2:
+                    del bag[at:at + chance.randrange(100)]
+                else:
+                    del bag[max(at, 1):]
+            (self.out / "train.bag").write_bytes(bag)
+            done = train_sim("verify", self.out)
+            self.assertIn(done.returncode, (0, 5, 6, 7), f"seed {seed}: {done.stdout + done.stderr}")
+            self.assertNotEqual("", done.stdout + done.stderr)
 
     def test_vehicle_commands(self):
         wagon = str(CONFIG / "vehicles" / "ore_wagon.yaml")

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/train/scenario.h"
+
 namespace ltd_master {
 
 /// How a command of train_sim ends.
@@ -12,6 +14,9 @@ enum ExitCode {
   kBadInput = 2,  ///< arguments or configuration
   kSimulationFault = 3,
   kRankFailure = 4,   ///< ltd_master: a wagon node is missing, dead, late or refuses
+  kDifferent = 5,     ///< verify: the repetition does not give what was recorded
+  kUnreadable = 6,    ///< verify: nothing can be told
+  kIncomplete = 7,    ///< verify: the same, as far as the recording goes
   kInterrupted = 130  ///< Ctrl-C; what was simulated is saved and marked incomplete
 };
 
@@ -26,6 +31,10 @@ struct RunOptions {
   int threads = 0;  ///< 0: one per core for the 2D model, one for LTD
   bool csv = false;
 };
+
+/// As many as asked for, if any; else one per core for the 2D model, and one for LTD, whose exchanges are shorter
+/// than a wake-up.
+int Threads(int asked, const train_dynamics::ScenarioParams& scenario);
 
 /// Simulates a scenario with all vehicles in this process.
 /// @throws train_dynamics::config::Error, std::exception

@@ -148,6 +148,22 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
   return {std::move(params), std::move(*consist), std::move(pressures), std::move(warnings)};
 }
 
+LoadedScenario LoadScenarioText(const std::string& text, const std::string& label) {
+  ErrorList errors;
+  ScenarioParams params = LoadText<ScenarioParams>(text, label, errors);
+  if (!params.pressure_table.empty())
+    errors.Add(label, 0, "pressure_table", "names a file, which is not at hand");
+  ThrowIfAny(errors);
+  Consist consist(params.train);
+  try {
+    PressureSource pressures = AirBrakePressures(params, consist);
+    return {std::move(params), std::move(consist), std::move(pressures), {}};
+  } catch (const std::invalid_argument& error) {
+    errors.Add(label, 0, "brake", std::string("does not suit the train: ") + error.what());
+    throw Error(errors);
+  }
+}
+
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides) {
   ErrorList errors;
   VehicleParams vehicle =

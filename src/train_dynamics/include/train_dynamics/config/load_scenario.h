@@ -30,6 +30,11 @@ struct LoadedScenario {
 /// @throws Error with everything that is wrong, as file:line: key ...
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides);
 
+/// Reads a scenario that stands alone in a text, such as Write gives; it must not name a pressure table.
+/// @param label  what messages name instead of a file
+/// @throws Error
+LoadedScenario LoadScenarioText(const std::string& text, const std::string& label);
+
 /// Reads a vehicle file likewise; a Wagon can be built of it.
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides);
 

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "ltd_master/recorded_message.h"
+
+namespace ltd_master {
+
+/// A bag of which nothing can be told; what() says why.
+class UnreadableBag : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The messages of one topic of a run, in the order of their exchanges.
+class RecordedTopic {
+ public:
+  RecordedTopic(const rosbag::Bag& bag, const std::string& topic);
+
+  const std::string& name() const { return name_; }
+  bool done() const { return position_ == end_; }
+  /// Of the message that is next; there must be one.
+  std::uint64_t exchange() const { return exchange_; }
+  const Bytes& message() const { return message_; }
+  /// @throws UnreadableBag
+  void Advance();
+
+ private:
+  void Load();
+
+  std::string name_;
+  std::unique_ptr<rosbag::View> view_;
+  rosbag::View::iterator position_, end_;
+  std::uint64_t exchange_ = 0;
+  Bytes message_;
+};
+
+/// The run of one train in a bag, whoever recorded it: train_sim, ltd_master or rosbag record.
+///
+/// Topics are known by their types and share the namespace of the topic of TrainState.
+class RecordedRun {
+ public:
+  /// @param train  namespace, "/train"; empty: that of the only train in the bag
+  /// @throws UnreadableBag
+  RecordedRun(const std::string& file, const std::string& train);
+
+  /// The whole scenario as YAML, if the bag has it.
+  std::optional<std::string> Scenario() const;
+
+  RecordedTopic& state() { return *state_; }
+  /// These are null where the bag has none.
+  RecordedTopic* forces() { return forces_.get(); }
+  RecordedTopic* pressures() { return pressures_.get(); }
+  RecordedTopic* ledger() { return ledger_.get(); }
+  /// @param name  "wagon_100"
+  RecordedTopic* wagon(const std::string& name);
+
+ private:
+  rosbag::Bag bag_;
+  std::string train_;
+  std::unique_ptr<RecordedTopic> state_, forces_, pressures_, ledger_;
+  std::map<std::string, std::unique_ptr<RecordedTopic>> wagons_;  ///< by name
+};
+
+}  // namespace ltd_master

@@ -1,0 +1,266 @@
+#include "ltd_master/verify_command.h"
+
+#include <fmt/format.h>
+#include <rosbag/exceptions.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "ltd_master/conversions.h"
+#include "ltd_master/interrupt.h"
+#include "ltd_master/progress.h"
+#include "ltd_master/recorded_run.h"
+#include "ltd_master/run_command.h"
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/train/in_process_train.h"
+
+namespace ltd_master {
+namespace {
+
+namespace fs = std::filesystem;
+using train_dynamics::ScenarioParams;
+using train_dynamics::TrainRecord;
+using train_dynamics::config::LoadedScenario;
+
+fs::path BagOf(const fs::path& recording) {
+  if (!fs::exists(recording)) throw UnreadableBag("there is no such file or folder");
+  if (!fs::is_directory(recording)) return recording;
+  if (fs::exists(recording / "train.bag")) return recording / "train.bag";
+  const fs::path active = recording / "train.bag.active";
+  if (!fs::exists(active)) throw UnreadableBag("the folder holds no train.bag");
+  throw UnreadableBag("the run was cut off: mend its bag by `rosbag reindex " + active.string() +
+                      "` and verify that");
+}
+
+/// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
+LoadedScenario ScenarioOf(const VerifyOptions& options, const RecordedRun& recorded) {
+  using train_dynamics::config::LoadScenario;
+  if (!options.config.empty()) return LoadScenario(options.config, {});
+  const fs::path recording(options.recording);
+  const bool is_folder = fs::is_directory(recording);
+  const fs::path beside = (is_folder ? recording : recording.parent_path()) / "config.yaml";
+  const std::optional<std::string> within = recorded.Scenario();
+  if (within && !(is_folder && fs::exists(beside))) {
+    return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
+  }
+  if (fs::exists(beside)) return LoadScenario(beside.string(), {});
+  throw UnreadableBag(
+      "the bag does not hold its scenario, and there is no config.yaml beside it; give it with --config");
+}
+
+/// The vehicles that the bag shows in full detail, from 1.
+std::vector<int> WagonsIn(RecordedRun& recorded, int vehicles) {
+  std::vector<int> wagons;
+  for (int i = 0; i < vehicles; ++i) {
+    if (recorded.wagon(VehicleName(i, vehicles)) != nullptr) wagons.push_back(i + 1);
+  }
+  return wagons;
+}
+
+/// Compares the records of a repetition with those of the bag, until one differs or the bag ends.
+class Comparison {
+ public:
+  Comparison(RecordedRun& recorded, int vehicles) : recorded_(recorded), vehicles_(vehicles) {}
+
+  /// An observer of the repetition's TrainMaster.
+  void Observe(const TrainRecord& record);
+
+  bool Differs() const { return !differences_.empty(); }
+  bool Finished() const { return Differs() || recorded_.state().done(); }
+  long records() const { return records_; }  ///< that are the same
+  /// The first record that differs, the vehicle and the quantity.
+  std::string Verdict() const;
+
+ private:
+  template <class Message, class Make>
+  void Check(RecordedTopic* topic, const TrainRecord& record, Message& message, const Make& make);
+  void CheckWagons(const TrainRecord& record);
+
+  RecordedRun& recorded_;
+  const int vehicles_;
+  long records_ = 0;
+  double initial_j_ = 0.0;
+  double time_s_ = 0.0;         ///< of the last record
+  std::uint64_t exchange_ = 0;  ///< of the last record
+  std::vector<Difference> differences_;
+
+  train_brake_msgs::TrainState state_;
+  train_brake_msgs::InTrainForces forces_;
+  train_brake_msgs::BrakePressures pressures_;
+  train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::WagonState wagon_;
+};
+
+/// Compares what the topic has about this record with the message that `make` fills, if one is due.
+template <class Message, class Make>
+void Comparison::Check(RecordedTopic* topic, const TrainRecord& record, Message& message, const Make& make) {
+  for (; topic != nullptr && !topic->done() && topic->exchange() <= record.exchange; topic->Advance()) {
+    if (topic->exchange() == record.exchange && make(message)) {
+      const std::vector<Difference> found = Compare(topic->message(), message);
+      differences_.insert(differences_.end(), found.begin(), found.end());
+    } else {
+      differences_.push_back({0, "",
+                              fmt::format("{} has a message of exchange {}, of which there is none now",
+                                          topic->name(), topic->exchange())});
+    }
+  }
+}
+
+void Comparison::CheckWagons(const TrainRecord& record) {
+  for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
+    Check(recorded_.wagon(VehicleName(detail.vehicle, vehicles_)), record, wagon_, [&](auto& message) {
+      Convert(record, detail, message);
+      return true;
+    });
+  }
+}
+
+void Comparison::Observe(const TrainRecord& record) {
+  if (Finished()) return;
+  const auto convert = [&](auto& message) {
+    Convert(record, message);
+    return true;
+  };
+  if (record.exchange == 0) initial_j_ = record.ledger->Stored();
+  time_s_ = record.time_s;
+  exchange_ = record.exchange;
+  const bool is_recorded = recorded_.state().exchange() == record.exchange;
+  CheckWagons(record);
+  Check(&recorded_.state(), record, state_, convert);
+  Check(recorded_.pressures(), record, pressures_, convert);
+  Check(recorded_.forces(), record, forces_, convert);
+  Check(recorded_.ledger(), record, ledger_, [&](auto& message) {
+    if (record.ledger != nullptr) Convert(record, *record.ledger, initial_j_, message);
+    return record.ledger != nullptr;
+  });
+  if (is_recorded && !Differs()) ++records_;
+}
+
+std::string Comparison::Verdict() const {
+  const auto is_digest = [](const Difference& each) {
+    return each.quantity == "vehicle_digest" || each.quantity == "state_digest";
+  };
+  const auto is_vehicle = [](const Difference& each) { return each.quantity == "vehicle_digest"; };
+  const auto first = std::find_if(differences_.begin(), differences_.end(), is_vehicle);
+  const int vehicle = first == differences_.end() ? 0 : first->vehicle;
+  const auto value = std::find_if(differences_.begin(), differences_.end(), [&](const Difference& each) {
+    return !is_digest(each) && (vehicle == 0 || each.vehicle == vehicle);
+  });
+  std::string what =
+      "the chain of digests, but no recorded value: the memory of a draft gear, or an earlier record";
+  if (value != differences_.end()) {
+    what = value->text;
+  } else if (vehicle > 0) {
+    what =
+        fmt::format("vehicle {}: its state, but no recorded value (detail_vehicles: [{}] records them all)",
+                    vehicle, vehicle);
+  }
+  return fmt::format(
+      "different: the first record that differs is that of {:g} s (exchange {})\n"
+      "  {}\n"
+      "  {} of {} vehicles differ in it; the {} records before it are the same\n",
+      time_s_, exchange_, Presentable(what),
+      std::count_if(differences_.begin(), differences_.end(), is_vehicle), vehicles_, records_);
+}
+
+int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
+  LoadedScenario scenario = ScenarioOf(options, recorded);
+  scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
+  const ScenarioParams& params = scenario.params;
+  train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, params));
+  train_dynamics::TrainMaster master(params, scenario.consist, vehicles, scenario.pressures);
+  Comparison comparison(recorded, scenario.consist.vehicles());
+  Progress progress(params.duration_s);
+  master.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
+  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
+
+  std::string fault;
+  try {
+    master.Start();
+    while (!master.Done() && !comparison.Finished() && Interrupt() == 0) master.Exchange();
+  } catch (const train_dynamics::SimulationFault& e) {
+    fault = e.what();
+  }
+  progress.Finish();
+
+  if (comparison.Differs()) {
+    fmt::print("{}", comparison.Verdict());
+    return kDifferent;
+  }
+  if (!fault.empty()) {
+    fmt::print("different: the repetition breaks down, where the bag goes on: {}\n", fault);
+    return kDifferent;
+  }
+  if (!comparison.Finished()) {
+    if (Interrupt() == 0) {
+      fmt::print("different: the bag goes on after the end at {:g} s\n", params.duration_s);
+      return kDifferent;
+    }
+    fmt::print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
+    return kInterrupted;
+  }
+  const long all = params.Exchanges() / params.ExchangesPerRecord() + 1;
+  const char* const covered =
+      comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
+  if (!master.Done()) {
+    fmt::print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n", master.time_s(),
+               params.duration_s, comparison.records());
+    return kIncomplete;
+  }
+  fmt::print("same: {} of {} records of {} vehicles to {:g} s, digest {:016x}{}\n", comparison.records(), all,
+             scenario.consist.vehicles(), params.duration_s, master.state_digest(), covered);
+  return kSuccess;
+}
+
+int Unreadable(const std::string& recording, const std::string& why) {
+  fmt::print(stderr, "train_sim: {} cannot be verified: {}\n", recording, Presentable(why));
+  return kUnreadable;
+}
+
+int VerifyHere(const VerifyOptions& options) {
+  try {
+    RecordedRun recorded(BagOf(options.recording), options.train);
+    return Repeat(options, recorded);
+  } catch (const rosbag::BagException& e) {
+    return Unreadable(
+        options.recording,
+        fmt::format("it is no whole bag ({}); `rosbag reindex` mends one that was cut off", e.what()));
+  } catch (const std::exception& e) {
+    return Unreadable(options.recording, e.what());
+  }
+}
+
+}  // namespace
+
+int Verify(const VerifyOptions& options) {
+  // In a process of its own: rosbag follows the sizes and positions in a damaged bag to wherever they point.
+  std::fflush(stdout);
+  CatchInterrupts();
+  const pid_t reader = fork();
+  if (reader < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (reader == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int exit_code = VerifyHere(options);
+    std::fflush(stdout);
+    _exit(exit_code);
+  }
+  int status = 0;
+  while (waitpid(reader, &status, 0) < 0) {
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+    kill(reader, Interrupt());
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : Unreadable(options.recording, "it is a damaged bag");
+}
+
+}  // namespace ltd_master
