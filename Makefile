@@ -6,6 +6,7 @@ NODES             ?= auto
 OUT               ?= results/$(SCENARIO)
 EXCHANGE_INTERVAL ?= 0
 JOBS              ?= $(shell nproc)
+FUZZ_SECONDS      ?= 60
 
 SHELL       := /bin/bash
 .SHELLFLAGS := -o pipefail -c
@@ -16,6 +17,10 @@ catkin_make = env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES catkin_make --no-co
 release  = $(catkin_make) -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_sanitize \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=address,undefined
+
+fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_fuzz \
+  -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+  -DTRAIN_BRAKE_SANITIZE=fuzzer-no-link,address,undefined -DTRAIN_BRAKE_FUZZ=ON
 
 # What of a build's output is worth reading: the steps and the complaints.
 quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Install space|Creating symlink|\#\#\#\#|-- |Consolidate compiler)|.*\] Built target )/d'
@@ -68,6 +73,12 @@ test-cluster: build ## a train over three machines (network namespaces with sshd
 	@tools/install_packages.sh packages_cluster.txt
 	@tools/test_cluster.sh
 
+.PHONY: fuzz
+fuzz: deps ## hostile input for every parser, FUZZ_SECONDS=60 each (clang), in build_fuzz/
+	@tools/install_packages.sh packages_fuzz.txt
+	@$(fuzz) fuzzers $(quietly)
+	@tools/fuzz.sh build_fuzz devel_fuzz $(FUZZ_SECONDS)
+
 .PHONY: check-deps
 check-deps: ## check who includes whom
 	@tools/check_dependencies.sh
@@ -87,4 +98,4 @@ tidy: build ## static analysis (clang-tidy 14)
 
 .PHONY: clean
 clean: ## remove everything built; results stay
-	@rm -rf build devel install build_sanitize devel_sanitize src/CMakeLists.txt .catkin_workspace
+	@rm -rf build devel install build_sanitize devel_sanitize build_fuzz devel_fuzz src/CMakeLists.txt .catkin_workspace

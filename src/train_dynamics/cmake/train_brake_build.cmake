@@ -3,6 +3,7 @@
 #
 #   train_brake_configure_target(target)              C++17, warnings, reproducible arithmetic, sanitizers
 #   train_brake_add_gtests(file... LIBRARIES lib...)  one GoogleTest executable per file
+#   train_brake_add_fuzz_targets(file... LIBRARIES lib...)  one fuzz target per file
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   # CMake's Release is -O3 -DNDEBUG.
@@ -11,6 +12,7 @@ endif()
 
 option(TRAIN_BRAKE_WARNINGS_AS_ERRORS "Stop at compiler warnings" ON)
 set(TRAIN_BRAKE_SANITIZE "" CACHE STRING "Sanitizers: empty, \"address,undefined\" or \"thread\"")
+option(TRAIN_BRAKE_FUZZ "Build the fuzz targets as fuzzers, not as tests (needs clang)" OFF)
 
 function(train_brake_configure_target target)
   set_target_properties(${target} PROPERTIES
@@ -50,5 +52,32 @@ function(train_brake_add_gtests)
     target_link_libraries(${target} ${arg_LIBRARIES} ${gtest_main})
     target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_CONFIG_DIR="${config_dir}")
     train_brake_configure_target(${target})
+  endforeach()
+endfunction()
+
+# A file foo_fuzz.cpp becomes the target <package>_foo_fuzz: with TRAIN_BRAKE_FUZZ a fuzzer, part of the target fuzzers
+# (tools/fuzz.sh runs them), else a test that runs it over the files in fuzz/corpus/foo.
+function(train_brake_add_fuzz_targets)
+  cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
+  if(NOT TRAIN_BRAKE_FUZZ)
+    train_brake_add_gtests(${arg_UNPARSED_ARGUMENTS} LIBRARIES ${arg_LIBRARIES})
+  elseif(NOT TARGET fuzzers)
+    add_custom_target(fuzzers)
+  endif()
+  foreach(source ${arg_UNPARSED_ARGUMENTS})
+    get_filename_component(stem ${source} NAME_WE)
+    set(target ${PROJECT_NAME}_${stem})
+    if(TRAIN_BRAKE_FUZZ)
+      add_executable(${target} ${source})
+      add_dependencies(fuzzers ${target})
+      target_link_libraries(${target} ${arg_LIBRARIES} -fsanitize=fuzzer)
+      get_filename_component(config_dir ${PROJECT_SOURCE_DIR}/../../config ABSOLUTE)
+      target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_CONFIG_DIR="${config_dir}")
+      train_brake_configure_target(${target})
+    else()
+      string(REGEX REPLACE "_fuzz$" "" name ${stem})
+      target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/../train_dynamics/fuzz/replay.cpp)
+      target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_CORPUS="${PROJECT_SOURCE_DIR}/fuzz/corpus/${name}")
+    endif()
   endforeach()
 endfunction()
