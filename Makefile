@@ -49,12 +49,12 @@ build: deps ## build everything (Release) into build/ and devel/
 	@$(release) $(quietly)
 
 .PHONY: run
-run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results in $(OUT)
+run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results and report in $(OUT)
 	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
 	  exchange_interval:=$(EXCHANGE_INTERVAL)
 
 .PHONY: paper
-paper: build ## all three scenarios of the paper x three models; prints its Table 1 and Figure 10 beside ours
+paper: build ## all scenarios of the paper x three models; its tables and figures beside ours in results/paper/report.html
 	@tools/paper.py devel/lib/ltd_master/train_sim results/paper
 
 .PHONY: test

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Launches a train as a ROS graph and passes on the run's own exit code, which roslaunch does not.
+# Launches a train as a ROS graph, makes the report on the run (OUT_FOLDER/report.html), and passes on the run's own exit
+# code, which roslaunch does not.
 #
 # usage: tools/run_train.sh SCENARIO_FILE OUT_FOLDER [arg:=value of launch/train.launch ...]
 # Exit codes are those of ltd_master (train_sim --help lists them; 4: a wagon node is missing, dead or late).
@@ -20,4 +21,9 @@ roslaunch train_brake train.launch scenario:="$scenario" vehicles:="$vehicles" o
 launch=$!
 while kill -0 $launch 2>/dev/null; do wait $launch; done
 code=$(cat "$status")
+
+# Code 2: nothing was written. What is in the folder is of an earlier run, if there is anything.
+if [ -n "$code" ] && [ "$code" != 2 ] && [ -e "$out/train.bag" ]; then
+  rosrun train_brake report "$out" || echo "The report on the run could not be made. The run itself ended with code $code." >&2
+fi
 exit "${code:-1}"

@@ -4,7 +4,7 @@
    the pressure before at the arrival t_i. The rise is no straight line; that shifts t_i by about 1 % of 1/beta times
    0.1 (1 ms), nearly the same for neighbours.
 2. Along the train t_i goes up and down: waves leave several sources and meet. A branch is a stretch where t_i climbs or
-   falls steadily with the distance d_i behind the first vehicle.
+   falls steadily with the distance d_i behind the first vehicle, without its end: there the other wave may be first.
 3. All branches share one slowness s = 1/c [s/m], each has its own start: least squares over
 
      t_i = t_b +- s (d_i - d_b)      =>      s = sum_b +- sum_i (d_i - d_b)(t_i - t_b) / sum_b sum_i (d_i - d_b)^2
@@ -65,22 +65,23 @@ def arrivals(time_s: numpy.ndarray, pressure_pa: numpy.ndarray) -> numpy.ndarray
 
 
 def _branches(arrival_s: numpy.ndarray, distance_m: numpy.ndarray) -> List[Tuple[int, int, int]]:
-    """(first, last, sign) of each stretch of at least three vehicles."""
+    """(first, last, sign) of each stretch of at least three vehicles, its end left out."""
     slowness = numpy.diff(arrival_s) / numpy.diff(distance_m)
     typical = numpy.nanmedian(numpy.abs(slowness))
     steady = numpy.abs(numpy.abs(slowness) - typical) < STEADY * typical
     kind = numpy.where(steady, numpy.sign(slowness), 0)
     edges = numpy.flatnonzero(numpy.diff(kind)) + 1
     stretches = zip(numpy.concatenate([[0], edges]), numpy.concatenate([edges, [len(kind)]]))
-    return [(int(a), int(b), int(kind[a])) for a, b in stretches if kind[a] != 0 and b - a >= 2]
+    return [(int(a), int(b) - 1, 1) if kind[a] > 0 else (int(a) + 1, int(b), -1)
+            for a, b in stretches if kind[a] != 0 and b - a >= 3]
 
 
 def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.ndarray) -> Wave:
     """Raises LeftOut if no wave is to be seen."""
-    if len(distance_m) < 3:
-        raise LeftOut("A wave is seen on a train of three vehicles or more.")
+    if len(distance_m) < 4:
+        raise LeftOut("A wave is seen on a train of four vehicles or more.")
     arrival = arrivals(time_s, pressure_pa)
-    if numpy.isfinite(arrival).sum() < 3:
+    if numpy.isfinite(arrival).sum() < 4:
         raise LeftOut("No brake was applied or released during the recording, or its records are too far apart to see the "
                       "pressures begin to move.")
     stretches = _branches(arrival, distance_m)
