@@ -70,7 +70,7 @@ class Page:
         self.left_out = {title: html.unescape(reason) for title, reason in
                          re.findall(r"<li><b>(.*?)</b>: (.*?)</li>", self.text)}
         self.numbers = [dict(re.findall(r'data-key="([^"]+)" data-value="([^"]+)"', card))
-                        for card in re.findall(r'<div class="card">(.*?)</div>', self.text, flags=re.DOTALL)]
+                        for card in re.findall(r'<article class="card">(.*?)</article>', self.text, flags=re.DOTALL)]
 
     def caption(self, name):
         return re.search(r"<figcaption>(.*?)</figcaption>", self.figures[name], flags=re.DOTALL).group(1)

@@ -82,8 +82,7 @@ def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.nda
         raise LeftOut("A wave is seen on a train of four vehicles or more.")
     arrival = arrivals(time_s, pressure_pa)
     if numpy.isfinite(arrival).sum() < 4:
-        raise LeftOut("No brake was applied or released during the recording, or its records are too far apart to see the "
-                      "pressures begin to move.")
+        raise LeftOut("Fewer than four vehicles were seen to begin to brake or release.")
     stretches = _branches(arrival, distance_m)
     if not stretches:
         raise LeftOut("The pressures begin to move in no order along the train that would be a wave.")

@@ -1,6 +1,7 @@
 """Forces between the vehicles: largest along the train, and the history of one (the paper's Figures 10 and 11)."""
 
 import numpy
+from matplotlib.ticker import MaxNLocator
 
 from train_brake_report import paper, style
 from train_brake_report.figure import Figure, LeftOut, panels_with_differences
@@ -53,6 +54,7 @@ def draw_largest(group: Group) -> Figure:
         caption += (f" {group.difference(run, first)}: {numpy.abs(difference).mean():.2f} kN on average in size, at most "
                     f"{difference[side, at]:+.1f} kN at connection {at + 1}.")
     canvas.axes[-1].set_xlabel("connection, from the front")
+    canvas.axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
     if all(paper.is_of_paper(run) for run in runs) and {"ltd", "2d"} <= {run.model for run in runs}:
         caption += _beside_the_paper(first.scenario, axes)
     return Figure("largest_coupler_forces", "Largest coupler forces along the train", caption + group.without(runs, "forces"),

@@ -8,6 +8,7 @@ from train_brake_report.group import Group
 from train_brake_report.run import Run
 
 MJ = 1e-6
+LEAST_J = 1e-3  # what is worth a line
 LARGE = 0.01  # of the initial energy: what is seen in the stack
 
 
@@ -72,8 +73,8 @@ def draw(group: Group) -> Figure:
 
 def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
     """Every element that dissipates, over six decades and more."""
-    taken = {name: e for name, e in dissipated.items() if e[-1] > 0.0}
-    smallest = max(1e-3, min((e[-1] for e in taken.values()), default=1.0) / 30)
+    taken = {name: e for name, e in dissipated.items() if e[-1] > LEAST_J}
+    smallest = min((e[-1] for e in taken.values()), default=1.0) / 30
     ends = []
     for i, (name, e) in enumerate(sorted(taken.items(), key=lambda item: -item[1][-1])):
         colour = style.COLOURS[i % len(style.COLOURS)]

@@ -15,7 +15,7 @@ def draw(group: Group) -> Figure:
     if not runs:
         raise LeftOut(f"There is no wagon {group.wagon}: the train has {group.runs[0].vehicles} vehicle(s).")
     if not any(numpy.nan_to_num(run.recording.state["shoe_force_n"][:, group.wagon - 1]).any() for run in runs):
-        raise LeftOut("No brake was applied.")
+        raise LeftOut(f"The brake of wagon {group.wagon} was not applied.")
     canvas = new_canvas(4.2)
     axes = canvas.subplots()
     caption = (f"Tangential force on one brake shoe and longitudinal force of the rail on one wheel of wagon {group.wagon}, "
