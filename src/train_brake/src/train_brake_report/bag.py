@@ -5,10 +5,11 @@ the bytes of all records of a topic are joined and seen as one numpy array, with
 message definition that the bag itself carries, so a bag of another version is read as far as its fields go.
 """
 
+import contextlib
 import dataclasses
 import pathlib
 import re
-from typing import Dict, List, Optional
+from typing import Dict, Iterator, List, Optional
 
 import genpy
 import numpy
@@ -57,6 +58,7 @@ class Recording:
     forces: Optional[Table] = None
     pressures: Optional[Table] = None
     wagon: Optional[Table] = None  # one vehicle in full detail
+    scenario: str = ""  # all of the configuration, as YAML
     ledger: List[genpy.Message] = dataclasses.field(default_factory=list)
     detailed_vehicles: List[int] = dataclasses.field(default_factory=list)
 
@@ -90,10 +92,11 @@ def _table(topic: str, messages: List[bytes], message_type: type) -> Table:
 
 
 def _topics_by_type(bag: rosbag.Bag) -> Dict[str, List[str]]:
+    """Without those under live/, which hold a few of the records once more, unless there are no others."""
     found: Dict[str, List[str]] = {}
     for topic, info in bag.get_type_and_topic_info().topics.items():
         found.setdefault(info.msg_type, []).append(topic)
-    return found
+    return {kind: [t for t in topics if "/live/" not in t] or topics for kind, topics in found.items()}
 
 
 def _vehicle_of(bag: rosbag.Bag, topic: str) -> int:
@@ -101,6 +104,12 @@ def _vehicle_of(bag: rosbag.Bag, topic: str) -> int:
     if numbered:
         return int(numbered.group(1))
     return next(bag.read_messages(topic)).message.vehicle
+
+
+def _scenario(bag: rosbag.Bag) -> str:
+    """Empty if the bag does not hold it."""
+    topic = next((t for t in _topics_by_type(bag).get("std_msgs/String", []) if t.endswith("/scenario")), None)
+    return next(bag.read_messages(topic)).message.data if topic else ""
 
 
 def _read(bag: rosbag.Bag, wagon: Optional[int]) -> Recording:
@@ -127,17 +136,14 @@ def _read(bag: rosbag.Bag, wagon: Optional[int]) -> Recording:
         types[chosen[topic]] = message_type
     tables = {kind: _table(topic, messages[kind], types[kind]) for topic, kind in chosen.items() if kind != ENERGY_LEDGER}
     return Recording(tables.get(TRAIN_STATE), tables.get(IN_TRAIN_FORCES), tables.get(BRAKE_PRESSURES),
-                     tables.get(WAGON_STATE),
+                     tables.get(WAGON_STATE), _scenario(bag),
                      [types[ENERGY_LEDGER]().deserialize(data) for data in messages.get(ENERGY_LEDGER, [])],
                      sorted(details))
 
 
-def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
-    """All of the train that the bag holds, and one vehicle in full detail if it was recorded so: the given one; if none
-    is given, the paper's or the first.
-
-    Topics are found by their type: it does not matter who recorded them, nor in which namespace.
-    """
+@contextlib.contextmanager
+def _opened(path: pathlib.Path) -> Iterator[rosbag.Bag]:
+    """The bag; what goes wrong with it, then and later, becomes a BagError."""
     try:
         with open(path, "rb") as file:
             begin = file.read(len(BAG_BEGIN))
@@ -146,7 +152,7 @@ def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
         if begin != BAG_BEGIN:
             raise BagError("this is not a bag. Give a .bag file, or the folder of a run")
         with rosbag.Bag(str(path)) as bag:
-            return _read(bag, wagon)
+            yield bag
     except BagError as error:
         raise BagError(f"{path}: {error}") from None
     except OSError as error:
@@ -157,3 +163,19 @@ def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
     except Exception as error:  # rosbag reads broken bytes as lengths and names: anything can follow
         raise BagError(f"{path} is damaged: {type(error).__name__}: {error}. `rosbag reindex {path}` keeps what can be "
                        "read; then call report again") from None
+
+
+def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
+    """All of the train that the bag holds, and one vehicle in full detail if it was recorded so: the given one; if none
+    is given, the paper's or the first.
+
+    Topics are found by their type: it does not matter who recorded them, nor in which namespace.
+    """
+    with _opened(path) as bag:
+        return _read(bag, wagon)
+
+
+def read_scenario(path: pathlib.Path) -> str:
+    """The configuration that the bag holds, as YAML; empty if it holds none."""
+    with _opened(path) as bag:
+        return _scenario(bag)

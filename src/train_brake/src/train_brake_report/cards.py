@@ -30,10 +30,10 @@ class Card:
     complete: Optional[bool]
     notes: List[str]
     facts: List[Fact]
-    config_text: str
+    config_text: str  # these four are empty if unknown
+    config_file: str
     digest: str
-    command: str
-    version: str  # of the program that ran; empty if unknown
+    version: str  # of the program that ran
 
 
 def _extreme(facts: List[Fact], run: Run, key: str, name: str, sign: int) -> None:
@@ -81,10 +81,10 @@ def facts_of(run: Run) -> List[Fact]:
 
 
 def card_of(run: Run) -> Card:
-    config = run.config_file.read_text() if run.config is not None else ""
     name = f"{run.scenario or run.bag.name}, {MODEL_NAMES.get(run.model, run.model)}"
-    return Card(run.label, name, (run.config or {}).get("description", ""), str(run.given), run.complete, run.notes, facts_of(run), config, run.digest or "",
-                f"rosrun ltd_master train_sim run {run.config_file} --out NEW_FOLDER" if config else "", (run.summary or {}).get("version", ""))
+    return Card(run.label, name, (run.config or {}).get("description", ""), str(run.given), run.complete, run.notes,
+                facts_of(run), run.config_text, str(run.config_file or ""), run.digest or "",
+                (run.summary or {}).get("version", ""))
 
 
 @dataclasses.dataclass

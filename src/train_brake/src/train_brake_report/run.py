@@ -3,12 +3,12 @@
 import functools
 import json
 import pathlib
-from typing import List, Optional
+from typing import Callable, List, Optional
 
 import numpy
 import yaml
 
-from train_brake_report.bag import BagError, Recording, read_bag
+from train_brake_report.bag import BagError, Recording, read_bag, read_scenario
 
 KMH_PER_MPS = 3.6
 MODEL_NAMES = {"2d": "2D train", "ltd": "LTD", "ltd-no-inertia": "LTD without rotational inertia"}
@@ -25,16 +25,19 @@ def _bag_of(given: pathlib.Path) -> pathlib.Path:
     raise BagError(f"{given} holds no train.bag{hint}")
 
 
-def _parsed(file: pathlib.Path, parse) -> Optional[dict]:
-    if not file.exists():
-        return None
+def _parsed(text: str, source: pathlib.Path, parse: Callable) -> dict:
+    """The keys in a text of JSON or YAML; none in an empty one."""
     try:
-        content = parse(file.read_text())
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise BagError(f"{file} is damaged: {error}. Move it away to do without it") from None
+        content = parse(text) if text else {}
+    except (ValueError, yaml.YAMLError) as error:
+        raise BagError(f"{source} is damaged: {' '.join(str(error).split())}") from None
     if not isinstance(content, dict):
-        raise BagError(f"{file} is damaged: it is no list of keys. Move it away to do without it")
+        raise BagError(f"{source} is damaged: it is no list of keys")
     return content
+
+
+def _text(file: pathlib.Path) -> str:
+    return file.read_text() if file.exists() else ""
 
 
 def _load_yaml(text: str) -> dict:
@@ -42,33 +45,30 @@ def _load_yaml(text: str) -> dict:
 
 
 class Run:
-    """One run, read. What the bag or the folder lacks is None."""
+    """One run, read. What neither the bag nor its folder knows is None."""
 
     def __init__(self, given: pathlib.Path, wagon: Optional[int]):
         self.given = given
         self.bag = _bag_of(given)
         self.recording: Recording = read_bag(self.bag, wagon)
         self.notes: List[str] = []
-        folder = self.bag.parent
-        self.config = _parsed(folder / "config.yaml", _load_yaml)
-        self.summary = _parsed(folder / "summary.json", json.loads)
-        self.config_file = folder / "config.yaml"
-        self._judge_companions()
-        self._judge_records()
         self.label = ""  # set by label_runs
+        self._find_companions()
+        self._judge_records()
 
-    def _judge_companions(self) -> None:
-        """config.yaml and summary.json belong to the train.bag beside them; to another bag if the digests agree."""
-        same = self.summary is None or self.digest is None or self.summary.get("state_digest") == self.digest
-        if self.bag.name.startswith("train.bag"):
-            if not same:
-                self.notes.append("The last record of the bag is not the last of the run (summary.json has another "
-                                  "digest): the end of the bag is missing.")
-        elif self.summary is None or not same or self.digest is None:
-            if self.config is not None:
-                self.notes.append("config.yaml and summary.json beside the bag are left aside: that they are of the "
-                                  "same run is not proved by an equal digest of the last record.")
-            self.config = self.summary = None
+    def _find_companions(self) -> None:
+        """summary.json and config.yaml belong to the train.bag beside them; to another bag if the digests agree."""
+        folder = self.bag.parent
+        summary = _parsed(_text(folder / "summary.json"), folder / "summary.json", json.loads) or None
+        proved = summary is not None and self.digest is not None and summary.get("state_digest") == self.digest
+        belong = proved or self.bag.name.startswith("train.bag")
+        if belong and summary is not None and self.digest is not None and not proved:
+            self.notes.append("The last record of the bag is not the last of the run (summary.json has another digest): the "
+                              "end of the bag is missing.")
+        self.summary = summary if belong else None
+        self.config_file = folder / "config.yaml" if belong and (folder / "config.yaml").exists() else None
+        self.config_text = self.recording.scenario or (_text(self.config_file) if self.config_file else "")
+        self.config = _parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, _load_yaml) or None
 
     def _judge_records(self) -> None:
         table = self.records
@@ -160,10 +160,10 @@ class Run:
 
 
 def scenario_of(given: pathlib.Path) -> str:
-    """The scenario's name, from the files beside the bag, without reading the bag; empty if unknown."""
-    folder = _bag_of(given).parent
-    summary = _parsed(folder / "summary.json", json.loads) or {}
-    return summary.get("scenario") or (_parsed(folder / "config.yaml", _load_yaml) or {}).get("name", "")
+    """The scenario's name; empty if unknown."""
+    bag = _bag_of(given)
+    beside = bag.parent / "config.yaml"
+    return _parsed(read_scenario(bag) or _text(beside), beside, _load_yaml).get("name", "")
 
 
 def label_runs(runs: List[Run]) -> None:
