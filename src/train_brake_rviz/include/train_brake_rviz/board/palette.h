@@ -1,0 +1,31 @@
+#pragma once
+
+namespace train_brake_rviz {
+
+struct Color {
+  float red, green, blue;  ///< 0 ... 1
+};
+
+constexpr Color Rgb(unsigned hex) {
+  return {static_cast<float>(hex >> 16 & 0xff) / 255.0f, static_cast<float>(hex >> 8 & 0xff) / 255.0f,
+          static_cast<float>(hex & 0xff) / 255.0f};
+}
+
+/// Colours of things: those of Okabe and Ito, which every kind of colour vision tells apart, and greys.
+namespace palette {
+inline constexpr Color kOrange = Rgb(0xe69f00), kSkyBlue = Rgb(0x56b4e9), kGreen = Rgb(0x009e73),
+                       kBlue = Rgb(0x0072b2), kVermillion = Rgb(0xd55e00), kPurple = Rgb(0xcc79a7);
+inline constexpr Color kInk = Rgb(0x000000), kDark = Rgb(0x444444), kAxis = Rgb(0x808080),
+                       kGrid = Rgb(0xd9d9d9), kShade = Rgb(0xececec), kPaper = Rgb(0xffffff);
+}  // namespace palette
+
+/// Colours of values. Each scale is even in lightness and readable with any colour vision; values outside
+/// take the colour of the nearer end, and what is not a number is grey.
+
+/// -1 (red) ... 0 (nearly white) ... 1 (blue): the scale RdBu of ColorBrewer.
+Color Diverging(double value);
+
+/// 0 (yellow, light) ... 1 (violet, dark): viridis of matplotlib, turned round for light paper.
+Color Sequential(double value);
+
+}  // namespace train_brake_rviz

@@ -1,0 +1,228 @@
+#include "train_brake_rviz/board/close_up.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "train_brake_rviz/board/axis.h"
+#include "train_brake_rviz/board/layout.h"
+
+namespace train_brake_rviz {
+namespace {
+
+using train_dynamics::BodyVector;
+using train_dynamics::kCarbody;
+using train_dynamics::kFrontBolster;
+using train_dynamics::kFrontFrame;
+using train_dynamics::kWheelset1;
+using train_dynamics::kWheelsets;
+
+constexpr double kSpan = 49.0;                      // width of the wagon on the board
+constexpr double kRailUp = 10.0;                    // of the rail over the area's bottom
+constexpr double kLoadText = 3.3, kSlipText = 1.3;  // heights of the numbers over the area's bottom
+constexpr double kSliding = 0.1;                    // creepage from which a wheel counts as sliding
+constexpr double kUndergear = 0.62;  // height of a carbody's floor, of that of its centre of gravity
+
+double MeanOfWheelsets(const std::array<double, train_dynamics::kBodies>& x) {
+  return 0.25 * (x[kWheelset1] + x[kWheelset1 + 1] + x[kWheelset1 + 2] + x[kWheelset1 + 3]);
+}
+
+std::string Kilonewtons(double force_n) { return Rounded(1e-3 * force_n, 0) + " kN"; }
+
+}  // namespace
+
+CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle,
+                 const BodyVector<double>& at_rest, double motion_exaggeration)
+    : area_(area),
+      vehicle_(vehicle),
+      at_rest_(at_rest),
+      exaggeration_(motion_exaggeration),
+      scale_(kSpan / vehicle.length_m),
+      rail_(area.bottom + kRailUp) {
+  forward_m_[kCarbody] = 0.0;
+  height_m_[kCarbody] = vehicle.carbody.cg_height_m;
+  for (int bogie = 0; bogie < train_dynamics::kBogies; ++bogie) {
+    const double sign = bogie == 0 ? 1.0 : -1.0;
+    const double centre = sign * vehicle.half_bogie_spacing_m;
+    forward_m_[kFrontBolster + bogie] = forward_m_[kFrontFrame + bogie] = centre;
+    height_m_[kFrontBolster + bogie] = vehicle.bolster.cg_height_m;
+    height_m_[kFrontFrame + bogie] = vehicle.bogie_frame.cg_height_m;
+    for (int axle = 0; axle < 2; ++axle) {
+      const int wheelset = kWheelset1 + 2 * bogie + axle;
+      forward_m_[wheelset] = centre + (axle == 0 ? 1.0 : -1.0) * vehicle.half_wheelset_spacing_m;
+      height_m_[wheelset] = vehicle.wheelset.wheel_radius_m;
+    }
+  }
+}
+
+Point CloseUp::PlaceOf(const BodyVector<double>& position, int body, double offset_forward_m,
+                       double offset_up_m) const {
+  const bool turns = body >= kWheelset1;  // wheels turn as they do, the others tilt as much as all moves
+  const double angle =
+      turns ? position.pitch[body] : exaggeration_ * (position.pitch[body] - at_rest_.pitch[body]);
+  const double forward = forward_m_[body] + exaggeration_ * (position.x[body] - MeanOfWheelsets(position.x)) +
+                         std::cos(angle) * offset_forward_m + std::sin(angle) * offset_up_m;
+  const double up = height_m_[body] + exaggeration_ * (position.z[body] - at_rest_.z[body]) +
+                    std::cos(angle) * offset_up_m - std::sin(angle) * offset_forward_m;
+  return {0.5 * (area_.left + area_.right) - scale_ * forward, rail_ + scale_ * up};
+}
+
+void CloseUp::Draw(Drawing& drawing, const train_dynamics::TrackParams& track, const Sight& sight) const {
+  drawing.On(Layer::kBack);
+  drawing.Box(area_, palette::kPaper);
+  drawing.On(Layer::kLine);
+  drawing.Frame(area_, layout::kThin, palette::kAxis);
+  const double left = area_.left + 1.5;
+  drawing.Write({left, area_.top - 2.0}, Align::kLeft, layout::kText, sight.title);
+  drawing.Write({left, area_.top - 4.6}, Align::kLeft, layout::kSmallText, sight.remark, palette::kDark);
+  DrawRail(drawing, track, sight.centre_m);
+
+  BodyVector<double> position = at_rest_;
+  for (int i = 0; i < kWheelsets; ++i) {
+    position.pitch[kWheelset1 + i] = sight.centre_m / vehicle_.wheelset.wheel_radius_m;
+  }
+  if (sight.detail != nullptr) position = sight.detail->position;
+  DrawBodies(drawing, position, sight.color);
+  for (int i = 0; i < kWheelsets; ++i) {
+    const bool slides = sight.detail != nullptr && std::abs(sight.detail->output.creepage[i]) >= kSliding;
+    DrawWheelset(drawing, position, i, slides);
+  }
+  DrawCouplerForce(drawing, position, 1.0, sight.front_force_n);
+  DrawCouplerForce(drawing, position, -1.0, sight.rear_force_n);
+  if (sight.detail == nullptr) return;
+  drawing.Write({left, area_.bottom + kLoadText}, Align::kLeft, layout::kSmallText, "wheel load",
+                palette::kDark);
+  drawing.Write({left, area_.bottom + kSlipText}, Align::kLeft, layout::kSmallText, "slip", palette::kDark);
+  DrawContactForces(drawing, *sight.detail);
+}
+
+void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::TrackParams& track, double centre_m) const {
+  constexpr int kPieces = 60;
+  const double half_m = 0.62 * vehicle_.length_m;
+  const auto rail_at = [&](int piece) {
+    const double forward = half_m * (1.0 - 2.0 * piece / kPieces);
+    const double height = train_dynamics::RailHeightAt(track, centre_m + forward).height;
+    return Point{0.5 * (area_.left + area_.right) - scale_ * forward,
+                 rail_ + scale_ * exaggeration_ * height};
+  };
+  drawing.On(Layer::kLine);
+  for (int i = 0; i < kPieces; ++i) {
+    Point a = rail_at(i), b = rail_at(i + 1);
+    a.up -= 0.5 * layout::kThick;
+    b.up -= 0.5 * layout::kThick;
+    drawing.Line(a, b, layout::kThick, palette::kDark);
+  }
+}
+
+void CloseUp::DrawBodies(Drawing& drawing, const BodyVector<double>& position, Color body) const {
+  const auto outline = [&](int b, const std::vector<Point>& corners_m, Color fill, Layer layer) {
+    std::vector<Point> corners;
+    for (const Point& corner : corners_m) corners.push_back(PlaceOf(position, b, corner.right, corner.up));
+    drawing.On(layer);
+    drawing.Polygon(corners, fill);
+    corners.push_back(corners.front());
+    drawing.Polyline(corners, layout::kThin, palette::kDark);
+  };
+  // In metres from each body's centre: (forward, up).
+  const double half = 0.5 * vehicle_.length_m - 0.45;
+  const double floor = (kUndergear - 1.0) * vehicle_.carbody.cg_height_m, roof = -1.1 * floor;
+  outline(kCarbody,
+          {{half, floor + 0.3},
+           {half - 0.3, floor},
+           {0.3 - half, floor},
+           {-half, floor + 0.3},
+           {-half, roof},
+           {half, roof}},
+          body, Layer::kFill);
+  const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;
+  for (const double end : {1.0, -1.0}) {
+    const double inner = end * (half - 0.8), outer = end * 0.5 * vehicle_.length_m;
+    outline(
+        kCarbody,
+        {{inner, coupler - 0.12}, {outer, coupler - 0.12}, {outer, coupler + 0.12}, {inner, coupler + 0.12}},
+        palette::kAxis, Layer::kBack);
+  }
+  const double plate = vehicle_.centre_plate.height_m - vehicle_.bolster.cg_height_m;
+  const double axle = vehicle_.half_wheelset_spacing_m;
+  for (int bogie = 0; bogie < train_dynamics::kBogies; ++bogie) {
+    outline(kFrontBolster + bogie,
+            {{0.28, -0.2},
+             {0.28, plate},
+             {0.16, plate + 0.35},
+             {-0.16, plate + 0.35},
+             {-0.28, plate},
+             {-0.28, -0.2}},
+            palette::kOrange, Layer::kTop);
+    outline(kFrontFrame + bogie,
+            {{axle + 0.18, -0.08},
+             {axle + 0.18, 0.1},
+             {0.55, 0.34},
+             {-0.55, 0.34},
+             {-axle - 0.18, 0.1},
+             {-axle - 0.18, -0.08},
+             {-0.55, -0.26},
+             {0.55, -0.26}},
+            palette::kSkyBlue, Layer::kFront);
+  }
+}
+
+void CloseUp::DrawWheelset(Drawing& drawing, const BodyVector<double>& position, int wheelset,
+                           bool slides) const {
+  const int body = kWheelset1 + wheelset;
+  const double radius = vehicle_.wheelset.wheel_radius_m;
+  const Point axle = PlaceOf(position, body, 0.0, 0.0);
+  drawing.On(Layer::kFill);
+  drawing.Disc(axle, scale_ * radius, slides ? palette::kVermillion : palette::kDark);
+  drawing.On(Layer::kLine);
+  drawing.Disc(axle, scale_ * 0.82 * radius, palette::kShade);
+  drawing.On(Layer::kTop);  // over the bogie frame, which would hide that the wheel turns
+  drawing.Line(PlaceOf(position, body, 0.0, -0.1 * radius), PlaceOf(position, body, 0.0, 0.8 * radius), 0.55,
+               palette::kInk);
+  drawing.Disc(axle, scale_ * 0.2 * radius, palette::kInk);
+}
+
+void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDetail& detail) const {
+  constexpr double kWidth = 0.5;
+  const double radius = vehicle_.wheelset.wheel_radius_m;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int body = kWheelset1 + i;
+    const Point axle = PlaceOf(detail.position, body, 0.0, 0.0);
+    const Point contact = {axle.right, axle.up - scale_ * radius};
+    drawing.On(Layer::kTop);
+    const double load = detail.output.normal_force_n[i], creep = detail.output.creep_force_n[i];
+    drawing.Arrow({contact.right, contact.up - kLoadScale * load}, contact, kWidth, palette::kGreen);
+    drawing.Arrow({contact.right, contact.up - 0.1},
+                  {contact.right + kFrictionScale * creep, contact.up - 0.1}, kWidth, palette::kVermillion);
+
+    // The shoe stands on the bogie's inner side of the wheel. Its friction acts along the tread: against a
+    // forward turning wheel, upwards on the front half of the wheel and downwards on the rear half.
+    const bool on_front_half = i % 2 == 1;
+    const double side = (on_front_half ? -1.0 : 1.0) * scale_ * radius;
+    const double shoe = (on_front_half ? 1.0 : -1.0) * kFrictionScale * detail.output.shoe_force_n[i];
+    const Point tread = {axle.right + side, axle.up};
+    drawing.Arrow(tread, {tread.right, tread.up + shoe}, kWidth, palette::kPurple);
+
+    drawing.Write({contact.right, area_.bottom + kLoadText}, Align::kCentre, layout::kSmallText,
+                  Kilonewtons(load));
+    drawing.Write({contact.right, area_.bottom + kSlipText}, Align::kCentre, layout::kSmallText,
+                  Rounded(100.0 * detail.output.creepage[i], 2) + " %");
+  }
+}
+
+void CloseUp::DrawCouplerForce(Drawing& drawing, const BodyVector<double>& position, double end,
+                               double force_n) const {
+  if (force_n == 0.0) return;
+  constexpr double kWidth = 0.8, kGap = 0.6, kNumberAway = 8.0, kNumberUp = 2.4;
+  const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;
+  const double outwards = -end;  // to the right on the board
+  const Point face = PlaceOf(position, kCarbody, end * 0.5 * vehicle_.length_m, coupler);
+  const Point near = {face.right + outwards * kGap, face.up};
+  const Point far = {near.right + outwards * kCouplerScale * std::abs(force_n), face.up};
+  const bool pulls = force_n > 0.0;
+  const Color color = pulls ? palette::kBlue : palette::kVermillion;
+  drawing.On(Layer::kTop);
+  drawing.Arrow(pulls ? near : far, pulls ? far : near, kWidth, color);
+  drawing.Write({face.right + outwards * kNumberAway, face.up + kNumberUp}, Align::kCentre, layout::kText,
+                Kilonewtons(force_n), color);
+}
+
+}  // namespace train_brake_rviz

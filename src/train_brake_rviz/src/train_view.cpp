@@ -1,0 +1,15 @@
+#include <exception>
+
+#include "train_brake_rviz/view_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "train_view");
+  try {
+    const train_brake_rviz::ViewNode view{ros::NodeHandle(), ros::NodeHandle("~")};
+    ros::spin();
+  } catch (const std::exception& e) {
+    ROS_FATAL("%s", e.what());
+    return 1;
+  }
+  return 0;
+}
