@@ -191,13 +191,14 @@ void Board::DrawPressures(Drawing& drawing, const Snapshot& snapshot, const Absc
   const Rectangle& area = layout::kPressurePlot;
   const AlongPlot plot(area, {0.0, pressure_limit_kpa_.value(), area.bottom, area.top}, abscissa);
   const std::vector<double> grid = VehicleGrid(snapshot);
+  constexpr double kNumberBelow = 1.9;
   plot.DrawAxes(drawing, "brake cylinder pressure [kPa]", grid);
   for (const double position : grid) {
     const auto vehicle = std::find(snapshot.position_m.begin(), snapshot.position_m.end(), position);
-    drawing.Write({abscissa(position), area.bottom - 1.5}, Align::kCentre, layout::kSmallText,
+    drawing.Write({abscissa(position), area.bottom - kNumberBelow}, Align::kCentre, layout::kSmallText,
                   std::to_string(vehicle - snapshot.position_m.begin() + 1));
   }
-  drawing.Write({area.left - 1.0, area.bottom - 1.5}, Align::kRight, layout::kSmallText, "vehicle");
+  drawing.Write({area.left - 1.0, area.bottom - kNumberBelow}, Align::kRight, layout::kSmallText, "vehicle");
   if (snapshot.cylinder_pressure_pa.empty()) return;
 
   const std::vector<double> pressure = Scaled(snapshot.cylinder_pressure_pa, kKilo),
