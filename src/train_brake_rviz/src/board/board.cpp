@@ -113,7 +113,8 @@ std::vector<double> Board::VehicleGrid(const Snapshot& snapshot) const {
   const Axis numbers = {1.0, std::max(2.0, static_cast<double>(last)), 0.0, 1.0};
   std::vector<double> grid;
   for (const double number : numbers.Ticks(8)) {
-    if (number >= 1.0 && number <= last) grid.push_back(snapshot.position_m[static_cast<size_t>(number) - 1]);
+    const bool is_vehicle = number >= 1.0 && number <= last && number == std::floor(number);
+    if (is_vehicle) grid.push_back(snapshot.position_m[static_cast<size_t>(number) - 1]);
   }
   return grid;
 }
