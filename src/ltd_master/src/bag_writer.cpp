@@ -159,8 +159,10 @@ int BagWriter::AddConnection(const std::string& topic, const std::string& type, 
   const auto id = static_cast<std::uint32_t>(connections_.size());
   Bytes& record = connections_.emplace_back().record;
   AppendHeader(record, "conn", id, "op", kConnection, "topic", topic);
-  AppendHeader(record, "md5sum", md5sum, "message_definition", definition, "type", type, "latching",
-               std::string(latched ? "1" : "0"));  // the data
+  AppendWithLength(record, [&] {  // the data
+    AppendFields(record, "md5sum", md5sum, "message_definition", definition, "type", type);
+    if (latched) AppendFields(record, "latching", std::string("1"));
+  });
   return static_cast<int>(id);
 }
 

@@ -22,19 +22,6 @@ std::string Content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
-  if (!fs::exists(file)) {
-    throw std::invalid_argument(
-        file.string() + " does not exist: the run has left no checkpoint, or it is no folder of a run");
-  }
-  const std::string content = Content(file);
-  try {
-    return train_dynamics::DecodeTrainCheckpoint({content.begin(), content.end()});
-  } catch (const train_dynamics::SnapshotError& e) {
-    throw std::invalid_argument(file.string() + " " + e.what());
-  }
-}
-
 /// The first line in which two texts differ, as "'now', was 'then'".
 std::string FirstDifference(const std::string& now, const std::string& then) {
   std::istringstream a(now), b(then);
@@ -71,6 +58,19 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then) {
 }
 
 }  // namespace
+
+train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
+  if (!fs::exists(file)) {
+    throw std::invalid_argument(
+        file.string() + " does not exist: the run has left no checkpoint, or it is no folder of a run");
+  }
+  const std::string content = Content(file);
+  try {
+    return train_dynamics::DecodeTrainCheckpoint({content.begin(), content.end()});
+  } catch (const train_dynamics::SnapshotError& e) {
+    throw std::invalid_argument(file.string() + " " + e.what());
+  }
+}
 
 std::string IdentityOf(const ScenarioParams& scenario) {
   ScenarioParams named = scenario;

@@ -39,10 +39,10 @@ LoadedScenario Load(const RunOptions& options) {
 
 }  // namespace
 
-int Threads(int asked, const train_dynamics::ScenarioParams& scenario) {
-  if (asked > 0) return asked;
-  if (scenario.model != train_dynamics::VehicleModel::kTwoD) return 1;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+int Threads(int asked, const LoadedScenario& scenario) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return train_dynamics::UsefulThreads(scenario.params.model, scenario.consist.vehicles(),
+                                       asked > 0 ? asked : cores);
 }
 
 namespace {
@@ -51,7 +51,7 @@ namespace {
 int Run(const LoadedScenario& scenario, const RunOptions& options,
         const train_dynamics::TrainCheckpoint* checkpoint, RunOutput& output) {
   train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
-                                              Threads(options.threads, scenario.params));
+                                              Threads(options.threads, scenario));
   train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
   train_dynamics::RunSummary summary(scenario.params);
   const double start_s =

@@ -28,7 +28,8 @@ fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolu
 
 bool IsResult(const std::string& name) {
   static const std::regex pattern(
-      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint)(\\.unfinished)?|"
+      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint|branched_from)(\\."
+      "unfinished)?|"
       "(pressure_table|train_history|pressures|couplers|vehicles|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
@@ -69,9 +70,12 @@ void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
 
 /// What recorders write and go on with.
 bool IsRecord(const std::string& name) {
-  static const std::regex pattern("train\\.bag(\\.active)?|(train_history|pressures|wagon_[0-9]+)\\.csv");
+  static const std::regex pattern(
+      "train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
+
+std::string TextOf(const train_dynamics::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 long CheckpointExchanges(const OutputOptions& options, const ScenarioParams& scenario) {
   if (options.checkpoint_interval_s <= 0.0) return 0;
@@ -133,6 +137,7 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
       fs::copy_file(entry.path(), folder_ / name, fs::copy_options::overwrite_existing);
     }
   }
+  if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
   for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
   const fs::path bag_file = folder_ / kBag;
   if (!bag.empty() && fs::exists(bag_file)) fs::rename(bag_file, bag_file.string() + ".active");
@@ -185,8 +190,7 @@ void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
     checkpoint.scenario = identity_;
     checkpoint.summary = summary.Memory();
     checkpoint.output = output.bytes();
-    const train_dynamics::Bytes bytes = Encode(checkpoint);
-    WriteFile(folder_ / kCheckpointFile, std::string(bytes.begin(), bytes.end()));
+    WriteFile(folder_ / kCheckpointFile, TextOf(Encode(checkpoint)));
   });
 }
 

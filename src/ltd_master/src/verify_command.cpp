@@ -21,9 +21,11 @@
 #include "ltd_master/interrupt.h"
 #include "ltd_master/progress.h"
 #include "ltd_master/recorded_run.h"
+#include "ltd_master/resume.h"
 #include "ltd_master/run_command.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
+#include "train_dynamics/train/run_summary.h"
 
 namespace ltd_master {
 namespace {
@@ -59,6 +61,13 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, const RecordedRun& recor
       "the bag does not hold its scenario, and there is no config.yaml beside it; give it with --config");
 }
 
+/// Where the run left another one, if it did.
+std::optional<train_dynamics::TrainCheckpoint> BranchOf(const fs::path& recording) {
+  const fs::path file = (fs::is_directory(recording) ? recording : recording.parent_path()) / kBranchFile;
+  if (!fs::exists(file)) return std::nullopt;
+  return ReadCheckpoint(file);
+}
+
 /// The vehicles that the bag shows in full detail, from 1.
 std::vector<int> WagonsIn(RecordedRun& recorded, int vehicles) {
   std::vector<int> wagons;
@@ -72,6 +81,9 @@ std::vector<int> WagonsIn(RecordedRun& recorded, int vehicles) {
 class Comparison {
  public:
   Comparison(RecordedRun& recorded, int vehicles) : recorded_(recorded), vehicles_(vehicles) {}
+
+  /// Leaves out what the bag has up to the checkpoint with which the repetition begins.
+  void BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params);
 
   /// An observer of the repetition's TrainMaster.
   void Observe(const TrainRecord& record);
@@ -123,6 +135,20 @@ void Comparison::CheckWagons(const TrainRecord& record) {
       Convert(record, detail, message);
       return true;
     });
+  }
+}
+
+void Comparison::BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params) {
+  train_dynamics::RunSummary summary(params);
+  summary.SetMemory(checkpoint.summary);
+  initial_j_ = summary.initial_energy_j();
+  std::vector<RecordedTopic*> topics = {&recorded_.state(), recorded_.forces(), recorded_.pressures(),
+                                        recorded_.ledger()};
+  for (const int vehicle : params.detail_vehicles) {
+    topics.push_back(recorded_.wagon(VehicleName(vehicle - 1, vehicles_)));
+  }
+  for (RecordedTopic* topic : topics) {
+    while (topic != nullptr && !topic->done() && topic->exchange() <= checkpoint.exchange) topic->Advance();
   }
 }
 
@@ -178,16 +204,24 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   LoadedScenario scenario = ScenarioOf(options, recorded);
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
   const ScenarioParams& params = scenario.params;
-  train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, params));
+  train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
   train_dynamics::TrainMaster master(params, scenario.consist, vehicles, scenario.pressures);
   Comparison comparison(recorded, scenario.consist.vehicles());
-  Progress progress(params.duration_s);
+  const std::optional<train_dynamics::TrainCheckpoint> branch = BranchOf(options.recording);
+  const std::uint64_t first = branch ? branch->exchange : 0;
+  const double start_s = static_cast<double>(first) * params.exchange_interval_s;
+  Progress progress(params.duration_s, start_s);
   master.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
 
   std::string fault;
   try {
-    master.Start();
+    if (branch) {
+      comparison.BeginAt(*branch, params);
+      master.Resume(*branch);
+    } else {
+      master.Start();
+    }
     while (!master.Done() && !comparison.Finished() && Interrupt() == 0) master.Exchange();
   } catch (const train_dynamics::SimulationFault& e) {
     fault = e.what();
@@ -210,7 +244,8 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
     fmt::print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
     return kInterrupted;
   }
-  const long all = params.Exchanges() / params.ExchangesPerRecord() + 1;
+  const long all =
+      (params.Exchanges() - static_cast<long>(first)) / params.ExchangesPerRecord() + (branch ? 0 : 1);
   const char* const covered =
       comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
   if (!master.Done()) {
@@ -218,8 +253,9 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
                params.duration_s, comparison.records());
     return kIncomplete;
   }
-  fmt::print("same: {} of {} records of {} vehicles to {:g} s, digest {:016x}{}\n", comparison.records(), all,
-             scenario.consist.vehicles(), params.duration_s, master.state_digest(), covered);
+  const std::string begin = branch ? fmt::format("from {:g} s, where it left another run, ", start_s) : "";
+  fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {:016x}{}\n", comparison.records(),
+             all, scenario.consist.vehicles(), begin, params.duration_s, master.state_digest(), covered);
   return kSuccess;
 }
 

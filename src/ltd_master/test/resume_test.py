@@ -117,6 +117,9 @@ class ResumeTest(unittest.TestCase):
         self.assertTrue(summary["complete"])
         self.assertNotEqual(self.summary["state_digest"], summary["state_digest"])
         self.assertEqual(before, (self.out / "train.bag").read_bytes())  # what it branched from stays
+        verified = subprocess.run([TRAIN_SIM, "verify", str(branch)], stdout=subprocess.PIPE, text=True)
+        self.assertEqual(0, verified.returncode, verified.stdout)
+        self.assertIn("from %g s, where it left another run" % summary["resumed_at_s"], verified.stdout)
         # One bag: up to the checkpoint that of the run, from there on another.
         at_ns = round(1e9 * summary["resumed_at_s"])
         states = [[m for m in messages(folder / "train.bag") if m[0] == "/train/state"] for folder in (self.whole, branch)]

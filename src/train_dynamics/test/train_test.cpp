@@ -32,6 +32,14 @@ TEST(Ledger, ClosesForEveryScenarioInTwoDimensions) {
 // ---- one train, many threads
 // ----------------------------------------------------------------------------------------
 
+TEST(UsefulThreads, AreNoMoreThanTheVehiclesAreWorth) {
+  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 2, 8), 1);  // a barrier costs more
+  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 16, 8), 2);
+  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 242, 2), 2);
+  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 242, 8), 1);
+  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 5000, 8), 5);
+}
+
 TEST(Threads, AnyNumberGivesTheSameBits) {
   for (const char* model : {"model=2d", "model=ltd"}) {
     const std::vector<std::string> overrides = {model, "duration_s=3.5"};  // 1.5 s of braking

@@ -74,7 +74,7 @@ struct WagonServer::Run {
         scenario(params),
         rank{train_dynamics::VehicleName(first, consist.vehicles()), first, count},
         vehicles_in_train(consist.vehicles()),
-        vehicles(params, consist, first, count, threads),
+        vehicles(params, consist, first, count, train_dynamics::UsefulThreads(params.model, count, threads)),
         state(count, DetailedVehicles(params, rank)) {}
 
   bool IsRepeated(const StepRequest& request) const {

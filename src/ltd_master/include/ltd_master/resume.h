@@ -12,6 +12,12 @@ namespace ltd_master {
 /// The file of a run's folder that holds its last checkpoint.
 inline constexpr const char* kCheckpointFile = "checkpoint";
 
+/// The file of a branch's folder that holds the checkpoint at which it left another run.
+inline constexpr const char* kBranchFile = "branched_from";
+
+/// @throws std::invalid_argument naming the file and what is wrong with it
+train_dynamics::TrainCheckpoint ReadCheckpoint(const std::filesystem::path& file);
+
 /// What a checkpoint is of: the resolved scenario as text, with a digest in place of its pressure table's name.
 /// Runs of equal text are the same run, bit for bit.
 std::string IdentityOf(const train_dynamics::ScenarioParams& scenario);

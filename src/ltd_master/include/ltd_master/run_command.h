@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "train_dynamics/train/scenario.h"
+#include "train_dynamics/config/load_scenario.h"
 
 namespace ltd_master {
 
@@ -32,9 +32,8 @@ struct RunOptions {
   bool csv = false;
 };
 
-/// As many as asked for, if any; else one per core for the 2D model, and one for LTD, whose exchanges are shorter
-/// than a wake-up.
-int Threads(int asked, const train_dynamics::ScenarioParams& scenario);
+/// As many as asked for, if any, else one per core; but no more than are useful.
+int Threads(int asked, const train_dynamics::config::LoadedScenario& scenario);
 
 /// Simulates a scenario with all vehicles in this process.
 /// @throws train_dynamics::config::Error, std::exception

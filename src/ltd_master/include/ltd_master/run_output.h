@@ -34,6 +34,7 @@ struct OutputOptions {
 ///
 ///   config.yaml   the scenario with everything resolved, at once; runs again to the same bits
 ///   train.bag     the records as they come (and tables, if wanted)
+///   branched_from where a branch left another run (a checkpoint, for verify)
 ///   checkpoint    now and then, and at the end: where the run can be resumed
 ///   summary.json  at the end; its absence tells that the run was cut off
 class RunOutput {

@@ -3,8 +3,14 @@
 #include <algorithm>
 
 #include "train_dynamics/train/thread_team.h"
+#include "train_dynamics/vehicle/lane_kernels.h"
 
 namespace train_dynamics {
+
+int UsefulThreads(VehicleModel model, int vehicles, int threads) {
+  const int per_thread = model == VehicleModel::kTwoD ? kMostLanes : 1000;
+  return std::clamp(vehicles / per_thread, 1, std::max(1, threads));
+}
 
 ThreadedBlock::ThreadedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count,
                              int threads) {

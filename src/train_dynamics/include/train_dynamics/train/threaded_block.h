@@ -9,6 +9,10 @@ namespace train_dynamics {
 
 class ThreadTeam;
 
+/// How many of `threads` threads make `vehicles` vehicles faster: a barrier costs about as much as eight wagons
+/// (a pack of lanes), or a thousand LTD vehicles.
+int UsefulThreads(VehicleModel model, int vehicles, int threads);
+
 /// A block whose vehicles are shared out over a fixed number of threads, in smaller blocks.
 ///
 /// The same bits for any number of threads: a vehicle's step depends on nothing but its own state and loads.
