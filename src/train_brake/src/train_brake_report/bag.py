@@ -1,8 +1,8 @@
 """Reads a bag of a train into arrays: each topic one table, a row per record.
 
 A bag of the paper's train holds 7000 records of 242 vehicles. Deserialised one by one they would take a minute; here
-the bytes of all records of a topic are joined and seen as one numpy array, without a copy. The layout comes from the
-message definition that the bag itself carries, so a bag of another version is read as far as its fields go.
+the bytes of all records of a topic are joined and seen as one numpy array. The layout comes from the message definition
+that the bag itself carries.
 """
 
 import contextlib
@@ -47,6 +47,9 @@ class Table:
         return field in self.rows.dtype.names
 
     def __getitem__(self, field: str) -> numpy.ndarray:
+        if field not in self:
+            raise BagError(f"a message in the bag has no field {field}: another version of train_brake wrote it. Make the "
+                           "report with that one")
         return self.rows[field]
 
 
@@ -121,13 +124,13 @@ def _read(bag: rosbag.Bag, wagon: Optional[int]) -> Recording:
             raise BagError(f"it holds more than one train: {', '.join(sorted(topics))}. `rosbag filter` parts them")
         chosen.update((topic, kind) for topic in topics)
     details = {_vehicle_of(bag, topic): topic for topic in by_type.get(WAGON_STATE, [])}
-    if not chosen and not details:
-        raise BagError("it holds no topic of a train; it has "
-                       + (", ".join(sorted(t for topics in by_type.values() for t in topics)) or "no message at all"))
     if wagon is None and details:
         wagon = paper.WAGON if paper.WAGON in details else min(details)
     if wagon in details:
         chosen[details[wagon]] = WAGON_STATE
+    if not set(chosen.values()) - {ENERGY_LEDGER}:
+        raise BagError("it holds no records of a train; it has "
+                       + (", ".join(sorted(t for topics in by_type.values() for t in topics)) or "no message at all"))
 
     messages: Dict[str, List[bytes]] = {kind: [] for kind in chosen.values()}
     types = {}

@@ -7,7 +7,7 @@ import numpy
 
 from train_brake_report import paper
 from train_brake_report.figure import Figure, Table
-from train_brake_report.run import KMH_PER_MPS, MODEL_NAMES, Run
+from train_brake_report.run import MODEL_NAMES, Run
 
 
 @dataclasses.dataclass
@@ -131,7 +131,7 @@ def table_2(rows: List[PaperRow]) -> Figure:
                       f"{cpu_s}" if two_d else "", f"{row.simulated_s / wall_s:.2f}" if two_d else "", f"{row.wall_s:.1f}",
                       f"{row.simulated_s / row.wall_s:.1f}"])
     return Figure("table_2", "Table 2: computing time",
-                  "The paper's program ran on 243 cores; here one process did, with the recording of the bag. Wall times "
+                  "The paper's times are those of its 2D train on 243 cores; here one process did, with the recording of the bag. Wall times "
                   "depend on what else the machine did.",
                   table=Table(["scenario", "model", "simulated [s]", "paper, wall [s]", "paper, CPU [s]",
                                "paper, times real time", "here, wall [s]", "here, times real time"], texts))

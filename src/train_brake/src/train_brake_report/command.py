@@ -158,4 +158,6 @@ def main(argv: List[str], train_sim: List[str] = ("rosrun", "ltd_master", "train
     except OSError as error:
         print(f"report: the page could not be written: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return 130
     return 0

@@ -72,12 +72,13 @@ class Run:
 
     def _judge_records(self) -> None:
         table = self.records
-        interval = numpy.median(numpy.diff(table.time_s)) if len(table) > 1 else 0.0
-        if table.time_s[0] > 1.5 * interval:
+        intervals = numpy.diff(table.time_s)
+        usual = numpy.median(intervals) if len(intervals) else 0.0
+        if table.time_s[0] > 1.5 * usual:
             self.notes.append(f"The bag begins at {table.time_s[0]:.2f} s.")
-        gaps = numpy.diff(table.time_s) > 1.5 * interval
-        if gaps.any():
-            missing = int(numpy.round(numpy.diff(table.time_s)[gaps] / interval - 1).sum())
+        gaps = intervals > 1.5 * usual
+        if usual > 0.0 and gaps.any():
+            missing = int(numpy.round(intervals[gaps] / usual - 1).sum())
             self.notes.append(f"{missing} records are missing from the bag, the first after "
                               f"{table.time_s[:-1][gaps][0]:.2f} s.")
         if self.complete is False:

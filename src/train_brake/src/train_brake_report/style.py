@@ -47,27 +47,28 @@ def run_line(number: int, runs: int) -> dict:
     return {"color": COLOURS[number % len(COLOURS)], "linewidth": width, "linestyle": "-" if number < 2 else (0, (4, 2))}
 
 
-def legend_above(axes: Axes, columns: int = 4, **options) -> None:
+def legend_above(axes: Axes, columns: int = 4) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=columns, borderaxespad=0.2, handlelength=2.2,
-                columnspacing=1.6, **options)
+                columnspacing=1.6)
 
 
 def legend_inside(axes: Axes) -> None:
     """Where least is drawn."""
-    axes.legend(loc="best", ncol=2, frameon=False, borderaxespad=0.1, handlelength=2.2)
+    axes.legend(loc="best", ncol=2, borderaxespad=0.1, handlelength=2.2)
 
 
-def label_ends(axes: Axes, ends, log: bool = False) -> None:
-    """Names lines at their right ends instead of in a legend; ends: (y, text, colour). Labels keep apart."""
-    figure_height = axes.get_window_extent().height
-    low, high = (numpy.log(v) if log else v for v in axes.get_ylim())
-    gap = 1.25 * matplotlib.rcParams["legend.fontsize"] * axes.figure.dpi / 72 / figure_height
+def label_ends(axes: Axes, ends) -> None:
+    """Names lines of a logarithmic panel at their right ends instead of in a legend; ends: (y, text, colour)."""
+    size = matplotlib.rcParams["legend.fontsize"]
+    axes.figure.draw_without_rendering()  # the panel's height is known only then
+    apart = 1.25 * size * axes.figure.dpi / 72 / axes.get_window_extent().height
+    low, high = numpy.log(axes.get_ylim())
     place = -numpy.inf
     for y, text, colour in sorted(ends):
-        exact = ((numpy.log(y) if log else y) - low) / (high - low)
-        place = max(exact, place + gap)
+        exact = (numpy.log(y) - low) / (high - low)
+        place = max(exact, place + apart)
         axes.annotate(text, (1.0, exact), (1.02, place), xycoords="axes fraction", textcoords="axes fraction", va="center",
-                      color=colour, fontsize=matplotlib.rcParams["legend.fontsize"],
+                      color=colour, fontsize=size,
                       arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0,
                                   "relpos": (0.0, 0.5)})
 

@@ -42,7 +42,7 @@ def draw_largest(group: Group) -> Figure:
     style.legend_above(axes)
 
     caption = ("Largest tension and compression of each connection during the run; connection c joins vehicles c and "
-               "c + 1. From the records of the bag; the cards above have the largest of all exchanges.")
+               "c + 1. From the records of the bag" + ("; the cards have the largest of all exchanges." if first.summary else "."))
     for panel, run in zip(below, others):
         difference = largest[run] - largest[first]
         connections = numpy.arange(1, difference.shape[1] + 1)

@@ -41,7 +41,7 @@ def draw(group: Group) -> Figure:
 
     force_kn = KN / WHEELS * wagon["wheel_normal_force_n"][shown, 0]
     above.plot(time_s, force_kn, color=style.BLUE, label="wheel of the first wheelset")
-    above.axhline(force_kn[0], color=style.MUTED, linewidth=1.0, linestyle=(0, (4, 3)), label="at rest")
+    above.axhline(force_kn[0], color=style.MUTED, linewidth=1.0, linestyle=(0, (4, 3)), label="before the dip")
     above.set_ylabel("vertical force [kN]")
     style.legend_above(above)
 
@@ -61,7 +61,7 @@ def draw(group: Group) -> Figure:
 
     frame = pitch[:, FRAME_FRONT]
     caption = (f"Dip of {1e3 * dip['depth_m']:g} mm on {dip['length_m']:g} m at {run.config['initial_speed_kmh']:g} km/h. "
-               f"The wheel's force goes from {force_kn.min():.1f} to {force_kn.max():.1f} kN, {force_kn[0]:.1f} at rest; the "
+               f"The wheel's force goes from {force_kn.min():.1f} to {force_kn.max():.1f} kN, {force_kn[0]:.1f} before; the "
                f"frame pitches by {frame.min():.2f} ... {frame.max():+.2f} mrad, where a rigid frame on the rail's shape "
-               f"would by ±{geometric:.2f}. The paper prints no numbers; its figure shows the same course.")
+               f"would by ±{geometric:.2f}. The paper prints no numbers of it.")
     return Figure("dip", "A wagon over the dip", caption, canvas)

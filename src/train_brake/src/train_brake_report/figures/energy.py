@@ -84,5 +84,4 @@ def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
     axes.set_ylabel("dissipated [J]")
     if ends:
         axes.set_ylim(bottom=smallest)
-        axes.figure.draw_without_rendering()
-        style.label_ends(axes, ends, log=True)
+        style.label_ends(axes, ends)

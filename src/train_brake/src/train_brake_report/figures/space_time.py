@@ -129,7 +129,9 @@ def _draw(quantity: Quantity, group: Group) -> Figure:
     if same:
         caption += f" {' and '.join(same)}: the same as {first.label}."
     panels[-1].set_xlabel("time [s]")
-    return Figure(quantity.name, quantity.title, caption + group.without(runs, quantity.table), canvas)
+    if quantity is SLIP and len(runs) < len(group.runs):
+        caption += " LTD vehicles have no wheels that could slip."
+    return Figure(quantity.name, quantity.title, caption + group.without(group.having(quantity.table), quantity.table), canvas)
 
 
 def draw_force(group: Group) -> Figure:

@@ -51,8 +51,8 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
     panels[-1].legend(loc="upper right", ncol=2)  # room above the lowest adhesion
     return Figure("adhesion", "Adhesion characteristics",
                   f"Longitudinal over normal force of a wheelset at rest load. Largest at 80 km/h: {', '.join(largest)}. With "
-                  "the paper's friction, 0.4 at any slip, adhesion neither depends on speed nor falls; the others are "
-                  "Polach's typical sets (low: assumed).",
+                  "the paper's friction, 0.4 at any slip, adhesion neither depends on speed nor falls: all speeds are one line, "
+                  "as on low. The others are Polach's typical sets (low: assumed).",
                   canvas)
 
 
