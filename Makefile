@@ -4,6 +4,7 @@ SCENARIO          ?= emergency
 MODEL             ?= 2d
 NODES             ?= auto
 OUT               ?= results/$(SCENARIO)
+REAL_TIME_FACTOR  ?= 1
 EXCHANGE_INTERVAL ?= 0
 JOBS              ?= $(shell nproc)
 FUZZ_SECONDS      ?= 60
@@ -44,6 +45,10 @@ help: ## this list
 deps: ## install the missing Debian packages (tools/packages.txt)
 	@tools/install_packages.sh
 
+.PHONY: deps-rviz
+deps-rviz: deps ## ... and those that show a train in rviz (tools/packages_rviz.txt)
+	@tools/install_packages.sh packages_rviz.txt
+
 .PHONY: build
 build: deps ## build everything (Release) into build/ and devel/
 	@$(release) $(quietly)
@@ -53,12 +58,18 @@ run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results a
 	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
 	  exchange_interval:=$(EXCHANGE_INTERVAL)
 
+.PHONY: rviz
+rviz: deps-rviz build ## run at REAL_TIME_FACTOR (1; 0 = as fast as possible) and watch it in rviz; ends when rviz is closed
+	@[ -n "$$DISPLAY" ] || { echo "make rviz: there is no display here (DISPLAY is not set)" >&2; exit 1; }
+	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
+	  exchange_interval:=$(EXCHANGE_INTERVAL) rviz:=true real_time_factor:=$(REAL_TIME_FACTOR) || [ $$? = 130 ]
+
 .PHONY: paper
 paper: build ## all scenarios of the paper x three models; its tables and figures beside ours in results/paper/report.html
 	@tools/paper.py devel/lib/ltd_master/train_sim results/paper
 
 .PHONY: test
-test: check-deps build ## build and run all tests
+test: check-deps deps-rviz build ## build and run all tests
 	@$(release) tests $(quietly)
 	@$(call run_tests,build)
 

@@ -129,8 +129,8 @@ TEST(Board, PlotsOfForcesAreTrueToScale) {
   snapshot.coupler_force_n[200] = -80e3;
   Board board(scenario);
   const Drawing plots = board.Draw(snapshot, {}).plots;
-  const Rectangle &area = layout::kForcePlot, tension = ExtentOf(plots, palette::kBlue),
-                  compression = ExtentOf(plots, palette::kVermillion);
+  const Rectangle &area = layout::kForcePlot, tension = ExtentOf(plots, palette::kTension),
+                  compression = ExtentOf(plots, palette::kCompression);
   const double zero = 0.5 * (area.bottom + area.top),
                per_kn = 0.5 * area.height() / 200.0;  // from -200 to 200 kN
   EXPECT_NEAR(zero, tension.bottom, 1e-9);

@@ -87,17 +87,17 @@ TEST_F(CloseUpTest, ArrowsAreAsLongAsTheForcesAreLarge) {
   const Rectangle load = ExtentOf(drawing, palette::kGreen);
   EXPECT_NEAR(390e3 * CloseUp::kLoadScale, load.height(), 1e-9);
   EXPECT_NEAR(close_up_.rail(), load.top, 1e-9);  // pushes upwards, up to the rail
-  const Rectangle creep = ExtentOf(drawing, palette::kVermillion);
+  const Rectangle creep = ExtentOf(drawing, palette::kOrange);
   EXPECT_NEAR(20e3 * CloseUp::kFrictionScale, creep.width(), 1e-9);
   EXPECT_NEAR(close_up_.PlaceOf(at_rest_, kWheelset1 + 3, 0.0, 0.0).right, creep.left, 1e-9);  // backwards
 }
 
-TEST_F(CloseUpTest, CouplersPullOutwardsInBlueAndPushInRed) {
+TEST_F(CloseUpTest, CouplersPullOutwardsAndPushInwards) {
   const double end = close_up_.PlaceOf(at_rest_, kCarbody, 0.5 * vehicle_.length_m, 0.0).right;
-  const Rectangle pull = ExtentOf(Draw(nullptr, 300e3), palette::kBlue);
+  const Rectangle pull = ExtentOf(Draw(nullptr, 300e3), palette::kTension);
   EXPECT_NEAR(300e3 * CloseUp::kCouplerScale, pull.width(), 1e-9);
   EXPECT_LT(pull.right, end);
-  const Rectangle push = ExtentOf(Draw(nullptr, -300e3), palette::kVermillion);
+  const Rectangle push = ExtentOf(Draw(nullptr, -300e3), palette::kCompression);
   EXPECT_NEAR(pull.left, push.left, 1e-9);
   EXPECT_NEAR(pull.right, push.right, 1e-9);
 }

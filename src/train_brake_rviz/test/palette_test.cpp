@@ -47,9 +47,9 @@ TEST(Palette, DivergingScaleDarkensToBothEndsAlike) {
   }
 }
 
-TEST(Palette, CompressionIsRedAndTensionIsBlue) {
-  EXPECT_GT(Diverging(-0.6).red, 2.0f * Diverging(-0.6).blue);
-  EXPECT_GT(Diverging(0.6).blue, 2.0f * Diverging(0.6).red);
+TEST(Palette, CompressionIsBlueAndTensionIsRed) {
+  EXPECT_GT(Diverging(-0.6).blue, 2.0f * Diverging(-0.6).red);
+  EXPECT_GT(Diverging(0.6).red, 2.0f * Diverging(0.6).blue);
 }
 
 TEST(Palette, WhatIsOutsideTakesTheEndAndWhatIsNoNumberIsGrey) {

@@ -170,8 +170,8 @@ void Board::DrawForces(Drawing& drawing, const Snapshot& snapshot, const Absciss
   drawing.On(Layer::kBack);
   plot.DrawBars(drawing, edges, forces_seen_.low, forces_seen_.high, palette::kShade);
   drawing.On(Layer::kFill);
-  plot.DrawBars(drawing, edges, zero, force, palette::kBlue);
-  plot.DrawBars(drawing, edges, force, zero, palette::kVermillion);
+  plot.DrawBars(drawing, edges, zero, force, palette::kTension);
+  plot.DrawBars(drawing, edges, force, zero, palette::kCompression);
 
   const auto [lowest, highest] = std::minmax_element(force.begin(), force.end());
   const auto between = [&force](auto at) {
@@ -182,10 +182,10 @@ void Board::DrawForces(Drawing& drawing, const Snapshot& snapshot, const Absciss
   constexpr double kWorthNaming = 0.5;  // [kN]
   if (*highest > kWorthNaming)
     drawing.Write({area.right - 44.0, up}, Align::kRight, layout::kText, "tension " + between(highest),
-                  palette::kBlue);
+                  palette::kTension);
   if (*lowest < -kWorthNaming)
     drawing.Write({area.right, up}, Align::kRight, layout::kText, "compression " + between(lowest),
-                  palette::kVermillion);
+                  palette::kCompression);
 }
 
 void Board::DrawPressures(Drawing& drawing, const Snapshot& snapshot, const Abscissa& abscissa) const {
@@ -218,7 +218,7 @@ void Board::DrawPressures(Drawing& drawing, const Snapshot& snapshot, const Absc
 std::vector<Color> Board::Colors(const Snapshot& snapshot, const Selection& selection) const {
   const Quantity& quantity = *selection.quantity;
   const double limit = color_limit_.at(quantity.name).value();
-  std::vector<Color> colors(consist_.vehicle_type.size(), palette::kAxis);
+  std::vector<Color> colors(consist_.vehicle_type.size(), palette::kUnknown);
   const std::vector<double> values = quantity.values(snapshot);
   for (size_t i = 0; i < values.size(); ++i)
     colors[i] = ColorOf(quantity, quantity.per_si * values[i], limit);
@@ -306,9 +306,9 @@ void Board::DrawLegend(Drawing& drawing, const Selection& selection) const {
     up -= 2.6;
   };
   arrow("wheel load, 400 kN", CloseUp::kLoadScale * 400e3, palette::kGreen);
-  arrow("creep force, 10 kN", CloseUp::kFrictionScale * 10e3, palette::kVermillion);
+  arrow("creep force, 10 kN", CloseUp::kFrictionScale * 10e3, palette::kOrange);
   arrow("brake shoe force, 10 kN", CloseUp::kFrictionScale * 10e3, palette::kPurple);
-  arrow("coupler force, 500 kN", CloseUp::kCouplerScale * 500e3, palette::kBlue);
+  arrow("coupler force, 500 kN", CloseUp::kCouplerScale * 500e3, palette::kTension);
 }
 
 }  // namespace train_brake_rviz

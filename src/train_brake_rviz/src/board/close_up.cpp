@@ -151,7 +151,7 @@ void CloseUp::DrawBodies(Drawing& drawing, const BodyVector<double>& position, C
              {-0.16, plate + 0.35},
              {-0.28, plate},
              {-0.28, -0.2}},
-            palette::kOrange, Layer::kTop);
+            palette::kAxis, Layer::kTop);
     outline(kFrontFrame + bogie,
             {{axle + 0.18, -0.08},
              {axle + 0.18, 0.1},
@@ -191,7 +191,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     const double load = detail.output.normal_force_n[i], creep = detail.output.creep_force_n[i];
     drawing.Arrow({contact.right, contact.up - kLoadScale * load}, contact, kWidth, palette::kGreen);
     drawing.Arrow({contact.right, contact.up - 0.1},
-                  {contact.right + kFrictionScale * creep, contact.up - 0.1}, kWidth, palette::kVermillion);
+                  {contact.right + kFrictionScale * creep, contact.up - 0.1}, kWidth, palette::kOrange);
 
     // The shoe stands on the bogie's inner side of the wheel. Its friction acts along the tread: against a
     // forward turning wheel, upwards on the front half of the wheel and downwards on the rear half.
@@ -218,7 +218,7 @@ void CloseUp::DrawCouplerForce(Drawing& drawing, const BodyVector<double>& posit
   const Point near = {face.right + outwards * kGap, face.up};
   const Point far = {near.right + outwards * kCouplerScale * std::abs(force_n), face.up};
   const bool pulls = force_n > 0.0;
-  const Color color = pulls ? palette::kBlue : palette::kVermillion;
+  const Color color = pulls ? palette::kTension : palette::kCompression;
   drawing.On(Layer::kTop);
   drawing.Arrow(pulls ? near : far, pulls ? far : near, kWidth, color);
   drawing.Write({face.right + outwards * kNumberAway, face.up + kNumberUp}, Align::kCentre, layout::kText,
