@@ -1,6 +1,7 @@
 #include "ltd_master/shared_slots.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -89,19 +90,26 @@ void SharedSlots::Offer(int rank, train_brake_msgs::ConfigureRequest& request) {
 }
 
 void SharedSlots::Settle(int rank, const train_brake_msgs::ConfigureResponse& response) {
-  ranks_[rank].is_used = ranks_[rank].slot != kNoSlot && response.ok && response.memory_used;
+  RankSlot& own = ranks_[rank];
+  own.is_used = own.slot != kNoSlot && response.ok && response.memory_used;
+  own.threads = response.threads;
 }
 
 void SharedSlots::Drop(int rank) { ranks_[rank] = {}; }
 
 void SharedSlots::Send(const std::vector<train_brake_msgs::Step>& calls) {
   train_brake_msgs::ExchangeHead& head = memory_->head();
-  const auto used =
-      std::count_if(ranks_.begin(), ranks_.end(), [](const RankSlot& own) { return own.is_used; });
+  std::int32_t used = 0;
+  std::uint32_t threads = 0;
+  for (const RankSlot& own : ranks_) {
+    used += own.is_used ? 1 : 0;
+    threads += own.is_used ? own.threads : 0;
+  }
   ++call_;
   heard_ = head.replies.rings();
-  head.ranks.store(static_cast<std::uint32_t>(used));
-  head.unreplied.store(static_cast<std::int32_t>(used));
+  head.threads.store(threads);
+  head.master_core.store(static_cast<std::uint32_t>(sched_getcpu()));
+  head.unreplied.store(used);
   for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
     if (!ranks_[rank].is_used) continue;
     memory_->request(ranks_[rank].slot).Write(call_, calls[rank].request, memory_->layout().request_room);
@@ -111,7 +119,8 @@ void SharedSlots::Send(const std::vector<train_brake_msgs::Step>& calls) {
 
 void SharedSlots::Wait(double timeout_s) {
   train_brake_msgs::ExchangeHead& head = memory_->head();
-  head.replies.Wait(heard_, train_brake_msgs::AwakeTime(head), timeout_s);
+  const bool has_core = head.threads < cores_;  // if not, a rank needs this one
+  if (!has_core || !vigil_.Hears(head.replies, heard_)) head.replies.Wait(heard_, timeout_s);
   heard_ = head.replies.rings();
 }
 

@@ -1,5 +1,7 @@
 #include "wagon_node/shared_slot.h"
 
+#include <sched.h>
+
 #include <stdexcept>
 
 namespace wagon_node {
@@ -16,7 +18,10 @@ bool SharedSlot::Wait(double timeout_s) {
   ExchangeHead& head = memory_.head();
   const std::uint32_t heard = head.requests.rings();
   if (memory_.request(slot_).call() != served_) return true;
-  head.requests.Wait(heard, train_brake_msgs::AwakeTime(head), timeout_s);
+  // There may be a core for each thread of the ranks; but one of them is the master's, who is the next to work.
+  const bool has_core =
+      head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
+  if (!has_core || !vigil_.Hears(head.requests, heard)) head.requests.Wait(heard, timeout_s);
   return memory_.request(slot_).call() != served_;
 }
 

@@ -22,7 +22,8 @@ WagonNode::WagonNode()
       server_(private_.param("threads", 1)),
       last_contact_(Clock::now()),
       next_question_(last_contact_),
-      timeout_(private_.param("master_timeout_s", 8.0)) {
+      timeout_(private_.param("master_timeout_s", 8.0)),
+      may_share_memory_(private_.param("shared_memory", true)) {
   ros::AdvertiseServiceOptions configure;
   configure.initBySpecType<ConfigureSpec>("configure",
                                           [this](ConfigureCall& call) { return Configure(call); });
@@ -39,8 +40,7 @@ WagonNode::WagonNode()
 }
 
 void WagonNode::Run() {
-  while (ros::ok() && (ServeSlot() || !IsLeftAlone())) {
-  }
+  while (ros::ok() && !IsLeftAlone()) ServeSlot();
   ros::shutdown();  // ends the thread that runs the callbacks, before what they use is destroyed
 }
 
@@ -71,13 +71,13 @@ bool WagonNode::Configure(ConfigureCall& call) {
 bool WagonNode::Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
   const std::lock_guard<std::mutex> lock(mutex_);
   response = Serve(request);
+  if (response.ok) last_contact_ = Clock::now();
   return true;
 }
 
 const train_brake_msgs::StepResponse& WagonNode::Serve(const train_brake_msgs::StepRequest& request) {
   const train_brake_msgs::StepResponse& response = server_.Step(request);
   if (response.ok) {
-    last_contact_ = Clock::now();
     Publish(response.record);
   } else {
     ROS_WARN("refused a step: %s", response.message.c_str());
@@ -90,7 +90,7 @@ void WagonNode::UseSlot(const train_brake_msgs::ConfigureRequest& offer) {
   const std::shared_ptr<SharedSlot> old = std::move(slot_);
   slot_ = nullptr;
   try {
-    if (offer.memory_pid != 0) slot_ = std::make_shared<SharedSlot>(offer);
+    if (offer.memory_pid != 0 && may_share_memory_) slot_ = std::make_shared<SharedSlot>(offer);
   } catch (const std::exception& e) {
     ROS_DEBUG("shares no memory with the master: %s", e.what());
   }
@@ -98,27 +98,32 @@ void WagonNode::UseSlot(const train_brake_msgs::ConfigureRequest& offer) {
   configured_.notify_one();
 }
 
-/// Waits for a call in the slot, and serves it. @return whether there was one
-bool WagonNode::ServeSlot() {
+/// Serves the calls in the slot, until none has come for a tick.
+void WagonNode::ServeSlot() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::shared_ptr<SharedSlot> slot = slot_;
   if (slot == nullptr) {
     configured_.wait_for(lock, std::chrono::duration<double>(kTick));
-    return false;
+    return;
   }
-  lock.unlock();
-  if (!slot->Wait(kTick)) return false;
-  lock.lock();
-  if (slot != slot_) return true;  // the node has been configured once more
-  try {
-    slot->Read(request_);
-    slot->Reply(Serve(request_));
-  } catch (const std::exception& e) {
-    train_brake_msgs::StepResponse refusal;
-    refusal.message = std::string("the request cannot be read: ") + e.what();
-    slot->Reply(refusal);
+  const auto is_called = [&] {
+    lock.unlock();
+    const bool is_there = slot->Wait(kTick);
+    lock.lock();
+    return is_there && slot == slot_;  // the node may have been configured once more
+  };
+  bool has_served = false;
+  for (; is_called() && ros::ok(); has_served = true) {
+    try {
+      slot->Read(request_);
+      slot->Reply(Serve(request_));
+    } catch (const std::exception& e) {
+      train_brake_msgs::StepResponse refusal;
+      refusal.message = std::string("the request cannot be read: ") + e.what();
+      slot->Reply(refusal);
+    }
   }
-  return true;
+  if (has_served) last_contact_ = Clock::now();
 }
 
 void WagonNode::Publish(const train_brake_msgs::RankRecord& record) {

@@ -74,6 +74,7 @@ struct WagonServer::Run {
         scenario(params),
         rank{train_dynamics::VehicleName(first, consist.vehicles()), first, count},
         vehicles_in_train(consist.vehicles()),
+        steps(static_cast<std::uint32_t>(params.StepsPerExchange())),
         vehicles(params, consist, first, count, train_dynamics::UsefulThreads(params.model, count, threads)),
         state(count, DetailedVehicles(params, rank)) {}
 
@@ -90,6 +91,7 @@ struct WagonServer::Run {
   const ScenarioParams scenario;
   const train_dynamics::Rank rank;
   const int vehicles_in_train;
+  const std::uint32_t steps;  ///< per exchange
   train_dynamics::ThreadedBlock vehicles;
   train_dynamics::ExchangeRequest loads;
   train_dynamics::ExchangeReply state;
@@ -167,6 +169,7 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
   response = ConfigureResponse();
   response.protocol_version = ConfigureRequest::PROTOCOL_VERSION;
   response.scenario_digest = train_dynamics::TextDigest(request.scenario);
+  response.threads = static_cast<std::uint32_t>(threads_);
   try {
     std::unique_ptr<Run> run = Begin(request, driven, response.scenario_digest);
     run->vehicles.Report(0, true, run->state);
@@ -253,7 +256,7 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
       sound ? train_dynamics::VehicleFault() : run.vehicles.FindFault();
   reply.fault_vehicle = static_cast<std::uint32_t>(fault.vehicle + 1);
   reply.fault = fault.what;
-  reply.record = RankRecord();
+  if (!reply.record.state_digest.empty()) reply.record = RankRecord();  // of an earlier exchange
   if (request.record) run.Fill(request.ledger, reply.record);
   reply.snapshot.clear();
   if (request.snapshot) reply.snapshot = run.Snapshot();
@@ -272,11 +275,10 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
            (request.exchange < run.next_exchange ? " is past" : " leaves a gap") + ": exchange " +
            Text(run.next_exchange) + " is next";
   }
-  const auto steps = static_cast<std::uint32_t>(run.scenario.StepsPerExchange());
-  if (request.dt_s != run.scenario.dt_s || request.steps != steps) {
+  if (request.dt_s != run.scenario.dt_s || request.steps != run.steps) {
     using train_dynamics::ShortestDecimal;
     return Text(request.steps) + " steps of " + ShortestDecimal(request.dt_s) +
-           " s are asked for, but it is " + Text(steps) + " of " + ShortestDecimal(run.scenario.dt_s) +
+           " s are asked for, but it is " + Text(run.steps) + " of " + ShortestDecimal(run.scenario.dt_s) +
            " s in the scenario";
   }
   const auto count = static_cast<std::size_t>(run.rank.count);

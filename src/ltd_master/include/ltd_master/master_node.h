@@ -41,6 +41,7 @@ struct MasterOptions {
   bool recover = true;  ///< bring lost wagon nodes back
   double recovery_timeout_s = 60.0;
   int blocking_threads = 0;  ///< 0 = asynchronous fan-out
+  bool shared_memory = true;
   std::string exit_status_file;
 
   /// @throws std::invalid_argument naming the parameter

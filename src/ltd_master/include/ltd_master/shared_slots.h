@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include "train_dynamics/train/ranks.h"
@@ -48,6 +49,7 @@ class SharedSlots {
   struct RankSlot {
     std::uint32_t slot = kNoSlot;
     bool is_used = false;
+    std::uint32_t threads = 0;  ///< of the rank
   };
 
   std::uint32_t NewSlot();
@@ -57,7 +59,9 @@ class SharedSlots {
   std::vector<RankSlot> ranks_;
   std::uint32_t next_slot_ = 0;  ///< that nobody has had
   std::uint64_t call_ = 0;       ///< number of the present one
-  std::uint32_t heard_ = 0;      ///< rings of the bell for replies
+  const unsigned cores_ = std::thread::hardware_concurrency();
+  train_brake_msgs::Vigil vigil_;
+  std::uint32_t heard_ = 0;  ///< rings of the bell for replies
 };
 
 }  // namespace ltd_master

@@ -3,10 +3,10 @@
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <ros/serialization.h>
-#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/interprocess/file_mapping.hpp>
 #include <boost/interprocess/mapped_region.hpp>
@@ -18,7 +18,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "train_brake_msgs/bounded_stream.h"
 
@@ -53,12 +52,9 @@ class alignas(kCacheLine) Bell {
     if (sleepers_.load() > 0) syscall(SYS_futex, &rings_, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
   }
 
-  /// Waits until it has rung since its rings were counted; a signal may end the wait, too.
-  /// @param heard      that count
-  /// @param awake_s    for how long to look again and again before falling asleep
-  /// @param timeout_s  of the sleep
-  void Wait(std::uint32_t heard, double awake_s, double timeout_s) {
-    if (RingsWithin(awake_s, heard)) return;
+  /// Sleeps until it has rung since its rings were counted; a signal may end the sleep, too.
+  /// @param heard  that count
+  void Wait(std::uint32_t heard, double timeout_s) {
     const auto seconds = static_cast<std::time_t>(timeout_s);
     const timespec timeout{seconds, static_cast<long>(1e9 * (timeout_s - static_cast<double>(seconds)))};
     sleepers_.fetch_add(1);
@@ -67,20 +63,39 @@ class alignas(kCacheLine) Bell {
   }
 
  private:
-  bool RingsWithin(double wall_s, std::uint32_t heard) const {
-    if (rings_.load() != heard) return true;
-    if (wall_s <= 0.0) return false;
-    using Clock = std::chrono::steady_clock;
-    const std::chrono::duration<double> patience(wall_s);
-    for (const Clock::time_point start = Clock::now(); Clock::now() - start < patience;) {
-      if (rings_.load() != heard) return true;
-      sched_yield();
+  std::atomic<std::uint32_t> rings_;
+  std::atomic<std::uint32_t> sleepers_;  ///< too many if some died in their sleep: a needless call, no more
+};
+
+/// Stays awake for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from
+/// whoever needs it, which shows only afterwards: after each vigil in vain, twice as many are left out.
+class Vigil {
+ public:
+  /// @return whether the bell has rung since its rings were counted
+  bool Hears(const Bell& bell, std::uint32_t heard) {
+    if (left_out_ > 0) {
+      --left_out_;
+      return bell.rings() != heard;
     }
+    const Clock::time_point end = Clock::now() + kLength;
+    do {
+      if (bell.rings() != heard) {
+        to_leave_out_ = kFewest;
+        return true;
+      }
+    } while (Clock::now() < end);
+    left_out_ = to_leave_out_;
+    to_leave_out_ = std::min(2 * to_leave_out_, kMost);
     return false;
   }
 
-  std::atomic<std::uint32_t> rings_;
-  std::atomic<std::uint32_t> sleepers_;  ///< too many if some died in their sleep: a needless call, no more
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::microseconds kLength{200};
+  static constexpr int kFewest = 16, kMost = 4096;
+
+  int left_out_ = 0;
+  int to_leave_out_ = kFewest;
 };
 
 /// A message from one process to another, with the number of the call that it belongs to. Its bytes follow it.
@@ -153,7 +168,8 @@ struct ExchangeLayout {
 /// What the slots follow. All zero in the beginning, but the layout.
 struct ExchangeHead {
   ExchangeLayout layout;
-  std::atomic<std::uint32_t> ranks;  ///< that use the memory
+  std::atomic<std::uint32_t> threads;      ///< of the ranks that use the memory
+  std::atomic<std::uint32_t> master_core;  ///< that the master runs on
   Bell requests;
   alignas(kCacheLine) std::atomic<std::int32_t> unreplied;
   std::atomic<std::uint32_t> last_slot;  ///< of the last one to reply
@@ -162,12 +178,6 @@ struct ExchangeHead {
 
 inline std::size_t ExchangeLayout::SlotOffset(std::uint32_t slot) const {
   return sizeof(ExchangeHead) + slot * SlotSize();
-}
-
-/// For how long to stay awake while waiting [s].
-inline double AwakeTime(const ExchangeHead& head) {
-  static const unsigned cores = std::thread::hardware_concurrency();
-  return head.ranks.load() <= cores ? 1e-4 : 0.0;
 }
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free &&

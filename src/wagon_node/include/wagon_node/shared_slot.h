@@ -5,6 +5,7 @@
 #include <train_brake_msgs/exchange_memory.h>
 
 #include <cstdint>
+#include <thread>
 
 namespace wagon_node {
 
@@ -27,6 +28,8 @@ class SharedSlot {
  private:
   train_brake_msgs::ExchangeMemory memory_;
   const std::uint32_t slot_;
+  const unsigned cores_ = std::thread::hardware_concurrency();
+  train_brake_msgs::Vigil vigil_;
   std::uint64_t served_;  ///< number of the last call that was read
 };
 

@@ -25,6 +25,7 @@ namespace wagon_node {
 ///   publishes   wagon_NNN/state     its vehicles in full detail, at every record; in the node's namespace
 ///   parameters  ~threads            default 1
 ///               ~master_timeout_s   default 8: leave after so long without a master; 0: never
+///               ~shared_memory      default true: share memory with a master on the same machine
 ///
 /// Calls of ~step come from roscpp's thread or, if the master is on the same machine, from memory that it
 /// shares: those are served by the thread that called Run().
@@ -58,7 +59,7 @@ class WagonNode {
   bool Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response);
   const train_brake_msgs::StepResponse& Serve(const train_brake_msgs::StepRequest& request);
   void UseSlot(const train_brake_msgs::ConfigureRequest& offer);
-  bool ServeSlot();
+  void ServeSlot();
   void Publish(const train_brake_msgs::RankRecord& record);
   bool IsLeftAlone();
 
@@ -73,6 +74,7 @@ class WagonNode {
   Clock::time_point last_contact_;
   Clock::time_point next_question_;  ///< to the ROS master
   std::chrono::duration<double> timeout_;
+  bool may_share_memory_;
   std::map<std::uint32_t, ros::Publisher> publishers_;  ///< by vehicle
   ros::ServiceServer configure_, step_;
 };
