@@ -18,6 +18,8 @@ catkin_make = env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES catkin_make --no-co
 release  = $(catkin_make) -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_sanitize \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=address,undefined
+tsan     = $(catkin_make) --build build_tsan -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_tsan \
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=thread
 
 fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_fuzz \
   -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
@@ -26,10 +28,10 @@ fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/dev
 # What of a build's output is worth reading: the steps and the complaints.
 quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Install space|Creating symlink|\#\#\#\#|-- |Consolidate compiler)|.*\] Built target )/d'
 
-# All tests of the build folder $(1), each in $(2) seconds (600), the output of failed ones, and "N passed, N failed". /usr/bin comes first, because
-# tools of ROS start "python3".
+# All tests of the build folder $(1), each in $(2) seconds (600), or those named $(3); the output of failed ones, and
+# "N passed, N failed". /usr/bin comes first, because tools of ROS start "python3".
 run_tests = rm -rf $(1)/test_results $(1)/Testing; \
-  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure); \
+  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure -R '$(3)'); \
   tools/test_summary.py $(1)
 
 sources = find src -name '*.h' -o -name '*.cpp'
@@ -79,6 +81,15 @@ test-sanitize: deps ## the same with the address and undefined-behaviour sanitiz
 	@$(sanitize) tests $(quietly)
 	@$(call run_tests,build_sanitize,3000)
 
+# Tests in which threads share anything. The rest has one.
+threaded = threaded_block_test|recorder_thread_test|run_control_test|wagon_server_test|train_sim_test|wire.test|distributed_train.test
+.PHONY: test-tsan
+test-tsan: export TSAN_OPTIONS = history_size=7 suppressions=$(CURDIR)/tools/thread_sanitizer.supp
+test-tsan: deps ## tests of everything with threads under the thread sanitizer, in build_tsan/
+	@$(tsan) $(quietly)
+	@$(tsan) tests $(quietly)
+	@$(call run_tests,build_tsan,3000,$(threaded))
+
 .PHONY: test-cluster
 test-cluster: build ## a train over three machines (network namespaces with sshd; needs root)
 	@tools/install_packages.sh packages_cluster.txt
@@ -109,4 +120,4 @@ tidy: build ## static analysis (clang-tidy 14)
 
 .PHONY: clean
 clean: ## remove everything built; results stay
-	@rm -rf build devel install build_sanitize devel_sanitize build_fuzz devel_fuzz src/CMakeLists.txt .catkin_workspace
+	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz src/CMakeLists.txt .catkin_workspace

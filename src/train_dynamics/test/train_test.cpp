@@ -29,34 +29,6 @@ TEST(Ledger, ClosesForEveryScenarioInTwoDimensions) {
   EXPECT_GE(scenarios, 6);
 }
 
-// ---- one train, many threads
-// ----------------------------------------------------------------------------------------
-
-TEST(UsefulThreads, AreNoMoreThanTheVehiclesAreWorth) {
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 2, 8), 1);  // a barrier costs more
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 16, 8), 2);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 242, 2), 2);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 242, 8), 1);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 5000, 8), 5);
-}
-
-TEST(Threads, AnyNumberGivesTheSameBits) {
-  for (const char* model : {"model=2d", "model=ltd"}) {
-    const std::vector<std::string> overrides = {model, "duration_s=3.5"};  // 1.5 s of braking
-    const Outcome one = Simulate("emergency", overrides, 1);
-    EXPECT_EQ(Simulate("emergency", overrides, 2).digest, one.digest);
-    EXPECT_EQ(Simulate("emergency", overrides, 3).digest, one.digest);
-    // The digest sees the last bit of the start speed.
-    const std::string nudge = "initial_speed_kmh=80.00000000000001";
-    EXPECT_NE(Simulate("emergency", {model, "duration_s=3.5", nudge}).digest, one.digest);
-  }
-}
-
-TEST(Threads, AsManyAsVehiclesAtMost) {
-  const Outcome one = Simulate("dip", {"duration_s=1"}, 1);
-  EXPECT_EQ(Simulate("dip", {"duration_s=1"}, 16).digest, one.digest);
-}
-
 // ---- exchange
 // -------------------------------------------------------------------------------------------------------
 
