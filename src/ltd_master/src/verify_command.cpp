@@ -1,25 +1,19 @@
 #include "ltd_master/verify_command.h"
 
 #include <fmt/format.h>
-#include <rosbag/exceptions.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "ltd_master/conversions.h"
 #include "ltd_master/interrupt.h"
 #include "ltd_master/progress.h"
+#include "ltd_master/recorded_message.h"
 #include "ltd_master/recorded_run.h"
 #include "ltd_master/resume.h"
 #include "ltd_master/run_command.h"
@@ -39,14 +33,13 @@ fs::path BagOf(const fs::path& recording) {
   if (!fs::exists(recording)) throw UnreadableBag("there is no such file or folder");
   if (!fs::is_directory(recording)) return recording;
   if (fs::exists(recording / "train.bag")) return recording / "train.bag";
-  const fs::path active = recording / "train.bag.active";
-  if (!fs::exists(active)) throw UnreadableBag("the folder holds no train.bag");
-  throw UnreadableBag("the run was cut off: mend its bag by `rosbag reindex " + active.string() +
-                      "` and verify that");
+  if (fs::exists(recording / "train.bag.active"))
+    return recording / "train.bag.active";  // of a run that was cut off
+  throw UnreadableBag("the folder holds no train.bag");
 }
 
 /// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
-LoadedScenario ScenarioOf(const VerifyOptions& options, const RecordedRun& recorded) {
+LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   using train_dynamics::config::LoadScenario;
   if (!options.config.empty()) return LoadScenario(options.config, {});
   const fs::path recording(options.recording);
@@ -214,6 +207,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   master.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
 
+  CatchInterrupts();
   std::string fault;
   try {
     if (branch) {
@@ -264,39 +258,15 @@ int Unreadable(const std::string& recording, const std::string& why) {
   return kUnreadable;
 }
 
-int VerifyHere(const VerifyOptions& options) {
-  try {
-    RecordedRun recorded(BagOf(options.recording), options.train);
-    return Repeat(options, recorded);
-  } catch (const rosbag::BagException& e) {
-    return Unreadable(
-        options.recording,
-        fmt::format("it is no whole bag ({}); `rosbag reindex` mends one that was cut off", e.what()));
-  } catch (const std::exception& e) {
-    return Unreadable(options.recording, e.what());
-  }
-}
-
 }  // namespace
 
 int Verify(const VerifyOptions& options) {
-  // In a process of its own: rosbag follows the sizes and positions in a damaged bag to wherever they point.
-  std::fflush(stdout);
-  CatchInterrupts();
-  const pid_t reader = fork();
-  if (reader < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (reader == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const int exit_code = VerifyHere(options);
-    std::fflush(stdout);
-    _exit(exit_code);
+  try {
+    RecordedRun recorded(BagOf(options.recording), options.train);
+    return Repeat(options, recorded);
+  } catch (const std::exception& e) {
+    return Unreadable(options.recording, e.what());
   }
-  int status = 0;
-  while (waitpid(reader, &status, 0) < 0) {
-    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-    kill(reader, Interrupt());
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : Unreadable(options.recording, "it is a damaged bag");
 }
 
 }  // namespace ltd_master

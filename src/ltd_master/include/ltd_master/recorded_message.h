@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "ltd_master/bag_file.h"
+
 /// Recorded messages as bytes, compared with what they should be. Nothing in the bytes is trusted: no size that they
 /// announce is allocated.
 namespace ltd_master {
-
-using Bytes = std::vector<std::uint8_t>;
 
 /// A value of a recorded message that is not what a repetition of the run gives.
 struct Difference {

@@ -1,31 +1,23 @@
 #pragma once
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
-#include "ltd_master/recorded_message.h"
+#include "ltd_master/bag_file.h"
 
 namespace ltd_master {
-
-/// A bag of which nothing can be told; what() says why.
-class UnreadableBag : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// The messages of one topic of a run, in the order of their exchanges.
 class RecordedTopic {
  public:
-  RecordedTopic(const rosbag::Bag& bag, const std::string& topic);
+  /// Keeps references. @throws UnreadableBag
+  RecordedTopic(BagFile& bag, const BagFile::Topic& topic);
 
-  const std::string& name() const { return name_; }
-  bool done() const { return position_ == end_; }
+  const std::string& name() const { return topic_.name; }
+  bool done() const { return next_ == topic_.messages.size(); }
   /// Of the message that is next; there must be one.
   std::uint64_t exchange() const { return exchange_; }
   const Bytes& message() const { return message_; }
@@ -35,9 +27,9 @@ class RecordedTopic {
  private:
   void Load();
 
-  std::string name_;
-  std::unique_ptr<rosbag::View> view_;
-  rosbag::View::iterator position_, end_;
+  BagFile& bag_;
+  const BagFile::Topic& topic_;
+  std::size_t next_ = 0;
   std::uint64_t exchange_ = 0;
   Bytes message_;
 };
@@ -52,7 +44,7 @@ class RecordedRun {
   RecordedRun(const std::string& file, const std::string& train);
 
   /// The whole scenario as YAML, if the bag has it.
-  std::optional<std::string> Scenario() const;
+  std::optional<std::string> Scenario();
 
   RecordedTopic& state() { return *state_; }
   /// These are null where the bag has none.
@@ -63,7 +55,7 @@ class RecordedRun {
   RecordedTopic* wagon(const std::string& name);
 
  private:
-  rosbag::Bag bag_;
+  BagFile bag_;
   std::string train_;
   std::unique_ptr<RecordedTopic> state_, forces_, pressures_, ledger_;
   std::map<std::string, std::unique_ptr<RecordedTopic>> wagons_;  ///< by name
