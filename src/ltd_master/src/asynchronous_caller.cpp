@@ -68,7 +68,8 @@ class CallOfAll {
       in_slots_.erase(std::remove_if(in_slots_.begin(), in_slots_.end(), is_over), in_slots_.end());
       Glance();
     }
-    outcome_.last_rank = slots.last_rank();
+    const int last_rank = slots.last_rank();
+    if (last_rank >= 0) outcome_.last_rank = last_rank;  // else a process that was given up came in last
   }
 
   /// @return whether nothing more is to be expected there
@@ -179,7 +180,7 @@ class AsynchronousCaller : public RankCaller {
     if (link != nullptr) return "";
     std::string host;
     std::uint32_t port = 0;
-    if (!ros::ServiceManager::instance()->lookupService(service, host, port)) return "has not advertised";
+    if (!ros::ServiceManager::instance()->lookupService(service, host, port)) return WhyNotFound();
     try {
       link = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Service>(),
                                            kHandshake);

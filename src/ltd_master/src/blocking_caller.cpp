@@ -40,7 +40,7 @@ class BlockingCaller : public RankCaller {
     const std::string& name = ranks_[rank].name;
     const bool is_connected = Connect<train_brake_msgs::Configure>(name + "/configure", configure_[rank]) &&
                               Connect<train_brake_msgs::Step>(name + "/step", step_[rank]);
-    return is_connected ? "" : "has not advertised";
+    return is_connected ? "" : WhyNotFound();
   }
   void Disconnect(int rank) override {
     BreakOff(rank);

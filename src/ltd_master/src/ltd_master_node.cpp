@@ -1,5 +1,9 @@
+#include <ros/master.h>
+
+#include <chrono>
 #include <exception>
 #include <string>
+#include <thread>
 
 #include "ltd_master/interrupt.h"
 #include "ltd_master/master_node.h"
@@ -7,6 +11,16 @@
 #include "train_dynamics/config/error_list.h"
 
 namespace {
+
+/// roscpp, too, waits for its ROS master, but deaf to signals. @return whether it is there
+bool WaitForRosMaster() {
+  for (bool is_first = true; !ros::master::check(); is_first = false) {
+    if (is_first) ROS_WARN("waiting for the ROS master at %s", ros::master::getURI().c_str());
+    if (ltd_master::Interrupt() != 0) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return true;
+}
 
 int Run(const ltd_master::MasterOptions& options, const ros::NodeHandle& own) {
   ltd_master::MasterNode master(options, ros::NodeHandle(), own);
@@ -18,6 +32,7 @@ int Run(const ltd_master::MasterOptions& options, const ros::NodeHandle& own) {
 int main(int argc, char** argv) {
   ros::init(argc, argv, "ltd_master", ros::init_options::NoSigintHandler);
   ltd_master::CatchInterrupts();
+  if (!WaitForRosMaster()) return ltd_master::kInterrupted;
   const ros::NodeHandle own("~");  // the node and its log end with the last handle: this one
   int exit_code = ltd_master::kFailure;
   std::string exit_status_file;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kSecondsPerReport = 5.0;  // on who has not come up yet
 constexpr std::chrono::milliseconds kRetry(100);
+constexpr std::chrono::milliseconds kRetryAfterFailure(500);  // of a node that has answered
 constexpr rlim_t kDescriptorsPerRank = 2;
 constexpr rlim_t kOtherDescriptors = 256;  // of roscpp, bag, logs
 
@@ -97,8 +98,8 @@ void RosTransport::KeepForRecovery() {
   log_.Begin(request_.exchange + 1, std::move(snapshots));
 }
 
-template <class CatchUp>
-void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& watch, CatchUp catch_up) {
+void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
+                           const std::function<void(int rank)>& catch_up) {
   if (lost.empty()) return;
   if (!options_.recover) watch.GiveUp(lost);
   for (const LostRank& one : lost) {
@@ -106,30 +107,42 @@ void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& w
     ROS_WARN("%s. The train waits until a node of that name is there again.", what.what());
   }
   const Clock::time_point start = Clock::now();
-  for (LostRank one : lost) {
-    for (bool is_back = false; !is_back;) {
-      WaitForRank(one, watch.when(), start);
-      try {
-        catch_up(one.rank);
-        is_back = true;
-      } catch (const RankLost& e) {
-        one.why = e.what();
-        ROS_WARN("%s: lost again", e.what());
-      }
-    }
+  for (const LostRank& one : lost) {
+    BringBack(one, watch.when(), start, [&] { catch_up(one.rank); });
     ++recoveries_;
     ROS_WARN("%s (%s) is back after %.1f s, with %lu exchanges replayed", ranks_[one.rank].name.c_str(),
              VehiclesText(ranks_[one.rank]).c_str(), SecondsSince(start), log_.size());
   }
 }
 
-void RosTransport::WaitForRank(const LostRank& lost, const std::string& when, Clock::time_point start) {
-  for (std::string why_not; !(why_not = caller_->Connect(lost.rank)).empty();) {
+void RosTransport::BringBack(const LostRank& lost, const std::string& when, Clock::time_point start,
+                             const std::function<void()>& catch_up) {
+  double next_report_s = kSecondsPerReport;
+  std::string tried;  // why the last node that was tried did not take its place
+  while (true) {
+    std::string why_not;
+    try {
+      why_not = caller_->Connect(lost.rank);
+      if (why_not.empty()) return catch_up();
+    } catch (const RankFailure& e) {
+      caller_->Disconnect(lost.rank);
+      why_not = e.what();
+      if (why_not != tried) ROS_WARN("%s: not taken in its place", e.what());
+      tried = why_not;
+      std::this_thread::sleep_for(kRetryAfterFailure);
+    }
     if (options_.interrupted()) throw WaitInterrupted();
-    if (options_.recovery_timeout_s > 0.0 && SecondsSince(start) > options_.recovery_timeout_s) {
+    const double waited_s = SecondsSince(start);
+    if (options_.recovery_timeout_s > 0.0 && waited_s > options_.recovery_timeout_s) {
       throw RankFailure(ranks_[lost.rank], when,
-                        fmt::format("{}; no node has taken its place within {:g} s: it {}", lost.why,
-                                    options_.recovery_timeout_s, why_not));
+                        fmt::format("{}; no node has taken its place within {:g} s: {}", lost.why,
+                                    options_.recovery_timeout_s, tried.empty() ? why_not : tried));
+    }
+    if (waited_s > next_report_s) {
+      ROS_WARN("%s: waiting for %.0f s already for a node in the place of %s (%s): %s", when.c_str(),
+               waited_s, ranks_[lost.rank].name.c_str(), VehiclesText(ranks_[lost.rank]).c_str(),
+               why_not.c_str());
+      next_report_s += kSecondsPerReport;
     }
     std::this_thread::sleep_for(kRetry);
   }
@@ -140,7 +153,7 @@ void RosTransport::Reconfigure(int rank) {
   call.request.exchange = log_.exchange();
   call.request.snapshot = log_.snapshot(rank);
   call.request.again = true;
-  LateWatch watch(ranks_, kConfiguration, options_.start_timeout_s, options_.interrupted);
+  LateWatch watch(ranks_, kConfiguration, options_.recovery_timeout_s, options_.interrupted);
   caller_->CallOne(rank, call, watch);
   if (!call.response.ok) throw RankFailure(ranks_[rank], kConfiguration, call.response.message);
 }

@@ -45,6 +45,9 @@ class RankCaller {
   virtual void CallOne(int rank, train_brake_msgs::Step& call, LateWatch& watch) = 0;
 };
 
+/// Why a rank cannot be looked up: "has not advertised", or the ROS master is not there.
+std::string WhyNotFound();
+
 /// One thread, which speaks TCPROS with all ranks: requests go out before any reply is waited for. Calls of Step
 /// to ranks on this machine go through memory that they share with this process, if they can.
 /// @param run_id  of the run that the memory is for; 0: share none

@@ -50,6 +50,8 @@ struct ExchangeTiming {
 ///   2. Configure it with the last snapshot of its vehicles
 ///   3. Step it again through the exchanges since: the same bits, because a rank's motion depends on nothing else
 ///
+/// A node that refuses one of these, or is lost in it, is not taken, and the next one is waited for.
+///
 /// Both throw RankFailure (no recovery wanted, or in vain; a refusal; a reply that makes no sense) and
 /// WaitInterrupted; afterwards the transport is of no more use.
 ///
@@ -77,10 +79,12 @@ class RosTransport : public train_dynamics::Transport {
   using Clock = std::chrono::steady_clock;
 
   void WaitForRanks();
-  /// Brings back those that were lost in a call, until `catch_up(rank)` has gone through for each.
-  template <class CatchUp>
-  void Recover(const std::vector<LostRank>& lost, const LateWatch& watch, CatchUp catch_up);
-  void WaitForRank(const LostRank& lost, const std::string& when, Clock::time_point start);
+  /// Brings back those that were lost in a call. @param catch_up  what a node in a lost one's place has to do
+  void Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
+               const std::function<void(int rank)>& catch_up);
+  /// Tries nodes of a lost rank's name until one of them has caught up.
+  void BringBack(const LostRank& lost, const std::string& when, Clock::time_point start,
+                 const std::function<void()>& catch_up);
   void Reconfigure(int rank);
   void Replay(int rank);
   void StepOne(int rank, train_brake_msgs::Step& call);
