@@ -1,0 +1,610 @@
+#!/usr/bin/python3
+"""The fault matrix: what may go wrong x when. Each cell is a whole launch of a small train.
+
+Each cell asserts how long it takes until the log names the culprit, the exit code, the results (those of the
+undisturbed run, bit by bit, or else its beginning and a clean stop), that the bag can be read, and that no process is
+left. docs/reliability.md has the table.
+
+usage: faults.py [arguments of unittest]       all cells; prints the table
+       faults.py --short --gtest_output=xml:F  one cell of each fault, for continuous integration
+"""
+import contextlib
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rosunit
+
+from launches import SHORT_TRAIN, Launch, RosMaster, is_beginning, messages, train_sim, wait_until
+
+DURATION = 2.0  # [s] of the train, and of wall time: long enough to be met on its way, with a snapshot after the first half
+EXCHANGES = 1000
+PACED = "real_time_factor:=1"
+A_QUARTER, THE_END = r" 0\.50 of 2 s", r" 2\.00 of 2 s"  # the master's progress
+SOON = 20.0  # [s] for what takes no time at all, on a busy machine
+RANK = r"/train/wagon_004 \(vehicles 4-6\)"
+
+table = []  # (fault, phase, what the log says, after how many seconds, what becomes of the run)
+undisturbed_runs = {}
+
+
+def cell(fault, phase):
+    """Gives a test its place in the table."""
+    def mark(test):
+        test.cell = (fault, phase)
+        return test
+    return mark
+
+
+def undisturbed(settings):
+    """Summary and bag of the same train in one process, without faults."""
+    if settings not in undisturbed_runs:
+        with tempfile.TemporaryDirectory() as folder:
+            arguments = [word for setting in settings.split() for word in ("--set", setting)]
+            undisturbed_runs[settings] = train_sim("--out", folder, *arguments), messages(f"{folder}/train.bag")
+    return undisturbed_runs[settings]
+
+
+class Matrix(unittest.TestCase):
+    """What cells are made of."""
+
+    settings = f"duration_s={DURATION:g}"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.master = RosMaster(folder.name)
+        self.addCleanup(self.end_everything)
+
+    def end_everything(self):
+        for process in self.master.processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+        self.master.kill()
+
+    def launch(self, *arguments, nodes=2):
+        """train.launch, with respawn."""
+        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6",
+                      f"nodes:={nodes}", f"set:={self.settings}", *arguments)
+
+    def launch_nodes(self, *nodes, **parameters):
+        """A train of two ranks with those nodes (XML), which are not respawned. @param parameters  of its master"""
+        values = {"scenario": SHORT_TRAIN, "ranks": 2, "real_time_factor": 1.0, "set": self.settings, **parameters}
+        text = "".join(f'<param name="{name}" value="{value}"/>' for name, value in values.items())
+        file = self.folder / "nodes.launch"
+        file.write_text(f"""<launch><arg name="out"/><arg name="exit_status_file"/><group ns="train">{"".join(nodes)}
+          <node pkg="ltd_master" type="ltd_master" name="master" required="true" output="screen">
+            <param name="out" value="$(arg out)"/><param name="exit_status_file" value="$(arg exit_status_file)"/>{text}
+          </node></group></launch>""")
+        return Launch(self.master, self.folder, (str(file),))
+
+    @staticmethod
+    def wagon(name):
+        return f'<node pkg="wagon_node" type="wagon_node" name="{name}" output="screen"/>'
+
+    def launch_faulty(self, fault, exchange, **parameters):
+        """The second rank is a faulty one, in front of a sound one."""
+        faulty = f'<node pkg="train_brake" type="faulty_rank.py" name="wagon_004" args="/train/sound {fault} {exchange}"/>'
+        return self.launch_nodes(self.wagon("wagon_001"), self.wagon("sound"), faulty, **parameters)
+
+    def start(self, package, program, *arguments, name="wagon_004"):
+        """A node by hand."""
+        process = subprocess.Popen(["rosrun", package, program, *arguments, "__ns:=/train", f"__name:={name}"],
+                                   env=self.master.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def call(self, service, *arguments):
+        done = subprocess.run(["rosservice", "call", "/train/master/" + service, *arguments], env=self.master.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+        self.assertIn("success: True", done.stdout)
+
+    def signal(self, number, node="wagon_004"):
+        """@return when"""
+        os.kill(self.master.process_of(node), number)
+        return time.monotonic()
+
+    def named(self, launch, pattern, since, outcome, limit_s=SOON):
+        """The log names what has happened within that time. A line of the table."""
+        seconds = launch.saw(pattern, limit_s, since) - since
+        self.note(f"{seconds:.2f}", outcome)
+
+    def note(self, seconds, outcome):
+        table.append((*getattr(self, self._testMethodName).cell, seconds, outcome))
+
+    def assert_nothing_left(self, launch):
+        self.assertTrue(wait_until(lambda: not self.master.processes(), SOON), f"{self.master.processes()}\n{launch.log()}")
+
+    def assert_same(self, launch, timeout_s=60):
+        """The run has ended as if nothing had happened."""
+        self.assertEqual(0, launch.ended(timeout_s), launch.log())
+        self.assert_nothing_left(launch)
+        expected, expected_bag = undisturbed(self.settings)
+        summary = launch.summary()
+        self.assertTrue(summary["complete"])
+        for key in ("state_digest", "final_speed_kmh", "max_tension_n", "max_compression_n", "energy", "vehicles"):
+            self.assertEqual(expected[key], summary[key], key)
+        self.assertTrue(launch.bag() == expected_bag, "the bag is not that of the undisturbed run")
+
+    def assert_stopped(self, launch, exit_code, fault="", timeout_s=60):
+        """The run has ended early, and what it has left is the beginning of the undisturbed one. @return records in its bag"""
+        self.assertEqual(exit_code, launch.ended(timeout_s), launch.log())
+        self.assert_nothing_left(launch)
+        summary = launch.summary()
+        self.assertFalse(summary["complete"])
+        self.assertIn(fault, summary["fault"] or "")
+        return self.assert_beginning(launch.bag())
+
+    def assert_beginning(self, bag):
+        self.assertTrue(is_beginning(bag, undisturbed(self.settings)[1]), "the bag is not the beginning of the undisturbed one")
+        return len(bag.get("/train/state", []))
+
+    # Cells that differ in little.
+
+    def is_stopped_by_reply(self, fault, exchange, text):
+        launch = self.launch_faulty(fault, exchange)
+        replied = launch.saw(A_QUARTER, SOON) + (exchange - EXCHANGES / 4) / EXCHANGES * DURATION  # at that pace
+        self.named(launch, RANK + f", exchange {exchange}: {text}", replied, "stopped, exit code 4")
+        self.assert_stopped(launch, 4, text)
+
+    def is_refused(self, fault, text, exchange=-1):
+        launch = self.launch_faulty(fault, exchange)
+        self.assertTrue(wait_until(lambda: "/train/wagon_004/configure" in self.master.services(), SOON))
+        self.named(launch, RANK + ".*" + text, time.monotonic() - 0.1, "stopped, exit code 4")
+        self.assertLess(self.assert_stopped(launch, 4), 2)
+
+    def is_waited_for(self, exchange, when):
+        launch = self.launch_faulty("slow", exchange)
+        launch.saw(f"{when}: waiting for 1 s already for 1 of 2 wagon nodes: {RANK}", 2 * SOON)
+        self.note("1.0", "waited for, same bits")
+        self.assert_same(launch)
+
+
+class Short(Matrix):
+    """One cell of each fault."""
+
+    @cell("kill -9 of a wagon node", "mid-run")
+    def test_kill(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, RANK + r", exchange \d+: closed the connection", killed, "brought back, same bits")
+        self.assert_same(launch)
+        self.assertRegex(launch.log(), RANK + " is back after")
+
+    @cell("SIGSTOP, later SIGCONT", "mid-run")
+    def test_stop(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        stopped = self.signal(signal.SIGSTOP)
+        self.named(launch, "waiting for 1 s already for 1 of 2 wagon nodes: " + RANK, stopped, "waited for, same bits")
+        self.signal(signal.SIGCONT)
+        self.assert_same(launch)
+        self.assertNotIn("is back", launch.log())
+
+    @cell("NaN in a reply", "mid-run")
+    def test_nan(self):
+        self.is_stopped_by_reply("nan", 500, "replied head_velocity_mps = nan for vehicle 4")
+
+    @cell("stale reply", "mid-run")
+    def test_stale(self):
+        self.is_stopped_by_reply("stale", 500, "replied to exchange 499")
+
+    @cell("wrong version of the protocol", "start-up")
+    def test_version_at_start_up(self):
+        self.is_refused("version", "the master speaks protocol version")
+
+    @cell("slow wagon node (1.5 s)", "mid-run")
+    def test_slow(self):
+        self.is_waited_for(500, "exchange 500")
+
+    @cell("roscore killed", "mid-run")
+    def test_roscore(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        self.master.kill()
+        self.assert_same(launch)
+        self.note("-", "not needed, same bits")
+
+    @cell("Ctrl-C", "mid-run")
+    def test_ctrl_c(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        interrupted = launch.interrupt()
+        self.named(launch, r"interrupted at \d\.\d+ s of 2 s", interrupted, "stopped, exit code 130")
+        self.assertGreater(self.assert_stopped(launch, 130), 50)  # 0.5 s
+
+
+@unittest.skipUnless(os.geteuid() == 0, "only root can make a small disk")
+class FullDisk(Matrix):
+    # Two chunks of a bag, and some more.
+    settings = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"
+
+    def setUp(self):
+        super().setUp()
+        self.disk = self.folder / "out"
+        self.disk.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "train_brake_test", str(self.disk)], check=True)
+        self.addCleanup(subprocess.run, ["umount", "--lazy", str(self.disk)], check=True)
+
+    def fill(self):
+        """@return when"""
+        with contextlib.suppress(OSError), open(self.disk / "filler", "wb", buffering=0) as filler:
+            for size in (1 << 20, 1 << 12):
+                with contextlib.suppress(OSError):
+                    while True:
+                        filler.write(bytes(size))
+        return time.monotonic()
+
+    def assert_ended(self, launch):
+        self.assertEqual(1, launch.ended(), launch.log())
+        self.assert_nothing_left(launch)
+        summary = launch.out / "summary.json"
+        if summary.exists():
+            json.loads(summary.read_text())  # whole, then
+
+    @cell("disk full", "start-up")
+    def test_at_start_up(self):
+        filled = self.fill()
+        launch = self.launch(PACED)
+        self.named(launch, "cannot write .*/out/config.yaml", filled, "stopped, exit code 1")
+        self.assert_ended(launch)
+        self.assertFalse((launch.out / "train.bag").exists())
+
+    @cell("disk full", "mid-run")
+    def test_in_mid_run(self):
+        launch = self.launch(PACED)
+        launch.saw(r" 1\.50 of 2 s", SOON)
+        filled = self.fill()
+        self.named(launch, "results could not be written: cannot write .*/out/train.bag: No space left on device", filled,
+                   "stopped at the next chunk, exit code 1; the bag holds the whole chunks")
+        self.assert_ended(launch)
+        self.assertGreater(self.assert_beginning(launch.bag()), 10)
+
+    @cell("disk full", "shut-down")
+    def test_at_shut_down(self):
+        launch = self.launch(PACED)
+        launch.saw(r" 2\.00 of 2 s", SOON)
+        filled = self.fill()
+        self.named(launch, "results could not be written: cannot write .*/out/", filled, "stopped, exit code 1; the bag holds the whole chunks")
+        self.assert_ended(launch)
+        self.assertGreater(self.assert_beginning(launch.bag()), 10)
+
+
+class Full(Matrix):
+    """The other cells."""
+
+    @cell("kill -9 of a wagon node", "start-up, before it is found")
+    def test_kill_at_start_up(self):
+        launch = self.launch(PACED)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, r"\[train/wagon_004-\d+\] restarting process", killed, "respawned, same bits")
+        self.assert_same(launch)
+
+    @cell("kill -9 of a wagon node", "start-up, while it is configured")
+    def test_kill_while_configured(self):
+        launch = self.launch_faulty("slow", -1)
+        launch.saw("configuration: waiting for 1 s", SOON)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, RANK + ", configuration: closed the connection", killed, "brought back, same bits")
+        self.start("wagon_node", "wagon_node")
+        self.assert_same(launch)
+
+    @cell("kill -9 of a wagon node", "shut-down")
+    def test_kill_at_shut_down(self):
+        launch = self.launch(PACED)
+        launch.saw(THE_END, SOON)
+        self.signal(signal.SIGKILL)
+        self.assert_same(launch)
+        self.note("-", "nobody minds")
+
+    @cell("kill -9 of a wagon node", "mid-run, on_lost_node:=stop")
+    def test_kill_and_stop(self):
+        launch = self.launch(PACED, "on_lost_node:=stop")
+        launch.saw(A_QUARTER, SOON)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, "the run broke down: " + RANK + r", exchange \d+: closed the connection", killed, "stopped, exit code 4")
+        self.assert_stopped(launch, 4, "closed the connection")
+
+    @cell("kill -9 of a wagon node", "mid-run, client:=blocking")
+    def test_kill_with_blocking_client(self):
+        launch = self.launch(PACED, "client:=blocking")
+        launch.saw(A_QUARTER, SOON)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, RANK + r", exchange \d+: the call failed", killed, "brought back, same bits")
+        self.assert_same(launch)
+
+    @cell("kill -9 of all wagon nodes", "paused before an exchange that takes snapshots")
+    def test_kill_all_while_paused(self):
+        launch = self.launch("start_paused:=true", nodes=3)
+        self.assertTrue(wait_until(lambda: "/train/master/step" in self.master.services(), SOON))
+        self.call("step", "499")
+        for node in ("wagon_001", "wagon_003", "wagon_005"):
+            self.signal(signal.SIGKILL, node)
+        resumed = time.monotonic()
+        self.call("resume")
+        self.named(launch, r"wagon_005 \(vehicles 5-6\), exchange 499: ", resumed, "brought back when the run goes on, same bits")
+        self.assert_same(launch)
+        self.assertEqual(3, launch.log().count(" is back after "))
+
+    @cell("kill -9 of a wagon node", "mid-run, nobody respawns it")
+    def test_kill_in_vain(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), recovery_timeout_s=2)
+        launch.saw(A_QUARTER, SOON)
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, "no node has taken its place within 2 s: ", killed, "stopped at recovery_timeout (here 2 s), exit code 4")
+        self.assert_stopped(launch, 4, "closed the connection; no node has taken its place within 2 s: ")
+
+    @cell("SIGSTOP, later SIGCONT", "start-up")
+    def test_stop_at_start_up(self):
+        launch = self.launch(PACED)
+        stopped = self.signal(signal.SIGSTOP)
+        self.named(launch, "1 of 2 wagon nodes are missing after 5 s: " + RANK, stopped, "waited for, same bits")
+        self.signal(signal.SIGCONT)
+        self.assert_same(launch)
+
+    def stop_beyond_deadline(self, *arguments):
+        launch = self.launch(PACED, "exchange_timeout:=1.5", *arguments)
+        launch.saw(A_QUARTER, SOON)
+        stopped = self.signal(signal.SIGSTOP)
+        self.named(launch, RANK + r", exchange \d+: no reply within 1.5 s", stopped,
+                   "lost at exchange_timeout (here 1.5 s), brought back, same bits")
+        return launch
+
+    @cell("SIGSTOP, later SIGCONT", "mid-run, awake again after the deadline")
+    def test_stop_beyond_deadline(self):
+        launch = self.stop_beyond_deadline()
+        time.sleep(1)
+        self.signal(signal.SIGCONT)
+        launch.saw(RANK + " is back after", SOON)
+        self.assert_same(launch)
+
+    @cell("SIGSTOP, later SIGCONT", "mid-run, the same with client:=blocking")
+    def test_stop_beyond_deadline_of_blocking_client(self):
+        launch = self.stop_beyond_deadline("client:=blocking")
+        time.sleep(1)
+        self.signal(signal.SIGCONT)
+        launch.saw(RANK + " is back after", SOON)
+        self.assert_same(launch)
+
+    @cell("SIGSTOP, later SIGCONT", "mid-run, awake again beside its replacement")
+    def test_stop_and_replace(self):
+        launch = self.stop_beyond_deadline()
+        old = self.master.process_of("wagon_004")
+        self.start("wagon_node", "wagon_node")
+        launch.saw(RANK + " is back after", SOON)
+        os.kill(old, signal.SIGCONT)  # its ROS master tells it to leave, and roslaunch respawns it: lost and found once more
+        self.assert_same(launch)
+
+    @cell("SIGSTOP, later SIGCONT", "shut-down, no SIGCONT")
+    def test_stop_at_shut_down(self):
+        launch = self.launch(PACED)
+        launch.saw(THE_END, SOON)
+        stopped = self.signal(signal.SIGSTOP)
+        self.named(launch, r"\[train/wagon_004-\d+\] escalating to SIGTERM", stopped,
+                   "killed by roslaunch (here: --sigint-timeout=5), same bits")
+        self.assert_same(launch)
+
+    @cell("NaN in a reply", "start-up")
+    def test_nan_at_start_up(self):
+        self.is_refused("nan", "configuration: replied head_velocity_mps = nan for vehicle 4")
+
+    @cell("NaN in a reply", "shut-down, last exchange")
+    def test_nan_at_shut_down(self):
+        self.is_stopped_by_reply("nan", EXCHANGES - 1, "replied head_velocity_mps = nan for vehicle 4")
+
+    @cell("stale reply", "start-up, second exchange")
+    def test_stale_at_start_up(self):
+        self.is_refused("stale", "exchange 1: replied to exchange 0", exchange=1)
+
+    @cell("stale reply", "shut-down, last exchange")
+    def test_stale_at_shut_down(self):
+        self.is_stopped_by_reply("stale", EXCHANGES - 1, f"replied to exchange {EXCHANGES - 2}")
+
+    @cell("wrong version of the messages", "start-up")
+    def test_md5sum_at_start_up(self):
+        self.is_refused("md5sum", "connection: .*md5sum")
+
+    @cell("wrong version of the protocol", "mid-run, of a replacement")
+    def test_version_of_a_replacement(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), self.wagon("sound"))
+        launch.saw(A_QUARTER, SOON)
+        self.signal(signal.SIGKILL)
+        other = self.start("train_brake", "faulty_rank.py", "/train/sound", "version", "-1")
+        self.assertTrue(wait_until(lambda: "/train/wagon_004/configure" in self.master.services(), SOON))
+        self.named(launch, RANK + ", configuration: the master speaks protocol version .*: not taken in its place",
+                   time.monotonic() - 0.5, "not taken; with another replacement, same bits")
+        other.kill()
+        self.start("wagon_node", "wagon_node")
+        self.assert_same(launch)
+
+    @cell("slow wagon node (1.5 s)", "start-up")
+    def test_slow_at_start_up(self):
+        self.is_waited_for(-1, "configuration")
+
+    @cell("slow wagon node (1.5 s)", "shut-down, last exchange")
+    def test_slow_at_shut_down(self):
+        self.is_waited_for(EXCHANGES - 1, f"exchange {EXCHANGES - 1}")
+
+    @cell("roscore killed", "start-up, a wagon node still to come")
+    def test_roscore_at_start_up(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"), startup_timeout_s=3)
+        self.assertTrue(wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON))
+        self.master.kill()
+        self.named(launch, r"/train/wagon_00\d: cannot be looked up: the ROS master at .* does not answer", time.monotonic(),
+                   "stopped at startup_timeout (here 3 s), exit code 4")
+        self.assertEqual(0, self.assert_stopped(launch, 4, "the ROS master at"))
+
+    @cell("roscore killed", "start-up, before the master knows it; Ctrl-C")
+    def test_no_roscore(self):
+        self.master.kill()
+        master = self.start("ltd_master", "ltd_master", name="master")
+        program = pathlib.Path(f"/proc/{master.pid}/comm")
+        self.assertTrue(wait_until(lambda: program.read_text() == "ltd_master\n", SOON))  # no longer rosrun
+        time.sleep(1)
+        interrupted = time.monotonic()
+        master.send_signal(signal.SIGINT)
+        self.assertEqual(130, master.wait(SOON))
+        self.note(f"{time.monotonic() - interrupted:.1f}", "waits for it; ended by Ctrl-C, exit code 130")
+
+    @cell("roscore killed", "mid-run, then a wagon node")
+    def test_roscore_and_wagon(self):
+        launch = self.launch(PACED, "recovery_timeout:=3")
+        launch.saw(A_QUARTER, SOON)
+        self.master.kill()
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, RANK + r", .*within 3 s: cannot be looked up: the ROS master at .* does not answer", killed,
+                   "stopped at recovery_timeout (here 3 s), exit code 4")
+        self.assert_stopped(launch, 4, "the ROS master at")
+
+    @cell("roscore killed", "mid-run, then a wagon node; later a new roscore")
+    def test_roscore_and_wagon_and_another_roscore(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        self.master.kill()
+        killed = self.signal(signal.SIGKILL)
+        self.named(launch, "waiting for 5 s already for a node in the place of " + RANK + ": cannot be looked up", killed,
+                   "brought back with the new roscore, same bits")
+        self.master.start()
+        self.assert_same(launch)
+
+    @cell("roscore killed", "shut-down")
+    def test_roscore_at_shut_down(self):
+        launch = self.launch(PACED)
+        launch.saw(THE_END, SOON)
+        self.master.kill()
+        self.assert_same(launch)
+        self.note("-", "not needed, same bits")
+
+    @cell("Ctrl-C", "start-up, a wagon node still to come")
+    def test_ctrl_c_at_start_up(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"))
+        self.assertTrue(wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON))
+        interrupted = launch.interrupt()
+        self.named(launch, r"interrupted at 0\.000 s", interrupted, "stopped, exit code 130")
+        self.assertEqual(0, self.assert_stopped(launch, 130))
+
+    @cell("Ctrl-C", "mid-run, while a lost wagon node is waited for")
+    def test_ctrl_c_while_waiting(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"))
+        launch.saw(A_QUARTER, SOON)
+        self.signal(signal.SIGKILL)
+        launch.saw("The train waits", SOON)
+        interrupted = launch.interrupt()
+        self.named(launch, r"interrupted at \d\.\d+ s of 2 s", interrupted, "stopped, exit code 130")
+        self.assertGreater(self.assert_stopped(launch, 130), 50)
+
+    @cell("Ctrl-C", "shut-down")
+    def test_ctrl_c_at_shut_down(self):
+        launch = self.launch(PACED)
+        launch.saw(THE_END, SOON)
+        launch.interrupt()
+        self.assert_same(launch)
+        self.note("-", "comes too late, same bits")
+
+    @cell("kill -9 of roslaunch", "mid-run")
+    def test_kill_launcher(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        launch.process.kill()
+        self.assertTrue(wait_until(launch.status_file.exists, SOON))
+        self.assert_same(launch)
+        self.note("-", "not needed, same bits")
+
+    @cell("kill -9 of a replacement", "mid-run, while it catches up")
+    def test_kill_replacement(self):
+        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), self.wagon("sound"))
+        launch.saw(A_QUARTER, SOON)
+        self.signal(signal.SIGKILL)
+        replacement = self.start("train_brake", "faulty_rank.py", "/train/sound", "slow", "100")
+        launch.saw("exchange 100: waiting for 1 s already for 1 of 2 wagon nodes: " + RANK, SOON)
+        killed = time.monotonic()
+        replacement.kill()
+        self.named(launch, RANK + ", exchange 100: closed the connection: not taken in its place", killed,
+                   "the next one is taken, same bits")
+        self.start("wagon_node", "wagon_node")
+        self.assert_same(launch)
+
+    @cell("SIGSTOP of the master, later SIGCONT", "mid-run, for longer than exchange_timeout")
+    def test_stop_master(self):
+        launch = self.launch(PACED, "exchange_timeout:=1")
+        launch.saw(A_QUARTER, SOON)
+        self.signal(signal.SIGSTOP, "master")
+        time.sleep(3)
+        self.signal(signal.SIGCONT, "master")
+        self.assert_same(launch)
+        self.note("-", "nobody minds, same bits")
+
+    @cell("another master", "mid-run")
+    def test_other_master(self):
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        started = time.monotonic()
+        other = self.start("ltd_master", "ltd_master", f"_scenario:={SHORT_TRAIN}", "_ranks:=2", name="other")
+        self.assertEqual(4, other.wait(SOON))
+        self.named(launch, "refused to be configured by /train/other: this wagon node is driven in run", started,
+                   "refused, its exit code is 4; same bits")
+        self.assert_same(launch)
+
+
+class KilledMaster(Matrix):
+    settings = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # more than one chunk of a bag
+
+    def assert_gone(self, launch):
+        self.assertIsNone(launch.ended())
+        self.assert_nothing_left(launch)
+        self.assertFalse((launch.out / "summary.json").exists())
+        unfinished = launch.out / "train.bag.active"
+        subprocess.run(["rosbag", "reindex", str(unfinished)], check=True, stdout=subprocess.DEVNULL)
+        return self.assert_beginning(messages(unfinished))
+
+    @cell("kill -9 of the master", "mid-run")
+    def test_in_mid_run(self):
+        launch = self.launch(PACED)
+        launch.saw(r" 1\.50 of 2 s", SOON)
+        killed = self.signal(signal.SIGKILL, "master")
+        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "stopped; rosbag reindex repairs the bag")
+        self.assertGreater(self.assert_gone(launch), 10)
+
+
+class RandomKills(Matrix):
+    """One run in which random wagon nodes are killed at random times, some of them again at once."""
+
+    settings = "duration_s=60"
+    kills, seed = 20, 20200401
+
+    @cell("20 kill -9 of random wagon nodes", "mid-run, some while they are brought back")
+    def test_random_kills(self):
+        nodes = ("wagon_001", "wagon_003", "wagon_005")
+        launch = self.launch("real_time_factor:=1", nodes=len(nodes))
+        random_numbers = random.Random(self.seed)
+        self.assertTrue(wait_until(lambda: "/train/master/set_real_time_factor" in self.master.services(), SOON))
+        for _ in range(self.kills):
+            self.signal(signal.SIGKILL, random_numbers.choice(nodes))
+            time.sleep(random_numbers.choice((0.0, 0.2, 1.0)) * random_numbers.random())
+        self.call("set_real_time_factor", "0")
+        self.assert_same(launch)
+        back = launch.log().count(" is back after ")
+        self.assertGreater(back, self.kills // 2)
+        self.note("-", f"{back} times brought back, same bits")
+
+
+if __name__ == "__main__":
+    if "--short" in sys.argv:
+        sys.argv.remove("--short")
+        rosunit.unitrun("train_brake", "faults", Short)
+    else:
+        program = unittest.main(exit=False, warnings="ignore")
+        for row in table:
+            print("| " + " | ".join(row) + " |")
+        sys.exit(not program.result.wasSuccessful())
