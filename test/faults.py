@@ -14,6 +14,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -557,24 +558,69 @@ class Full(Matrix):
         self.assert_same(launch)
 
 
-class KilledMaster(Matrix):
+class Resumed(Matrix):
+    """Runs whose master has ended, in whatever way, and that go on from their last checkpoint with other nodes."""
+
     settings = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # more than one chunk of a bag
 
-    def assert_gone(self, launch):
+    def launch_checkpointed(self):
+        return self.launch(PACED, "checkpoint_interval:=0.2")
+
+    def resume(self):
+        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"resume:={self.folder}/out", "vehicles:=6", "nodes:=3")
+
+    def assert_killed(self, launch):
+        """... and has left a bag that can be repaired. @return records in it"""
         self.assertIsNone(launch.ended())
         self.assert_nothing_left(launch)
         self.assertFalse((launch.out / "summary.json").exists())
-        unfinished = launch.out / "train.bag.active"
-        subprocess.run(["rosbag", "reindex", str(unfinished)], check=True, stdout=subprocess.DEVNULL)
-        return self.assert_beginning(messages(unfinished))
+        copy = shutil.copy(launch.out / "train.bag.active", self.folder / "copy.bag")
+        subprocess.run(["rosbag", "reindex", "-q", str(copy)], check=True, stdout=subprocess.DEVNULL)
+        return self.assert_beginning(messages(copy))
+
+    @cell("kill -9 of the master", "start-up")
+    def test_kill_at_start_up(self):
+        launch = self.launch_checkpointed()
+        killed = self.signal(signal.SIGKILL, "master")
+        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; nothing to resume yet")
+        self.assertIsNone(launch.ended())
+        self.assert_nothing_left(launch)
+        self.assertEqual(2, self.resume().ended())
 
     @cell("kill -9 of the master", "mid-run")
-    def test_in_mid_run(self):
-        launch = self.launch(PACED)
+    def test_kill(self):
+        launch = self.launch_checkpointed()
         launch.saw(r" 1\.50 of 2 s", SOON)
         killed = self.signal(signal.SIGKILL, "master")
-        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "stopped; rosbag reindex repairs the bag")
-        self.assertGreater(self.assert_gone(launch), 10)
+        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; resumed to the same bits")
+        self.assertGreater(self.assert_killed(launch), 100)
+        self.assert_same(self.resume())
+
+    @cell("kill -9 of the master", "shut-down")
+    def test_kill_at_shut_down(self):
+        launch = self.launch_checkpointed()
+        launch.saw(THE_END, SOON)
+        killed = self.signal(signal.SIGKILL, "master")
+        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; results complete, or resumed to the same bits")
+        self.assertIsNone(launch.ended())
+        self.assert_nothing_left(launch)
+        again = self.resume()
+        if again.ended() == 2:
+            self.assertIn("nothing is left to do", again.log())
+        else:
+            self.assert_same(again)
+
+    @cell("Ctrl-C", "mid-run, resumed")
+    def test_ctrl_c(self):
+        launch = self.launch_checkpointed()
+        launch.saw(r" 1\.50 of 2 s", SOON)
+        launch.interrupt()
+        self.assertGreater(self.assert_stopped(launch, 130), 100)
+        interrupted_s = launch.summary()["simulated_s"]
+        launch = self.resume()
+        self.assert_same(launch)
+        self.assertEqual(interrupted_s, launch.summary()["resumed_at_s"])  # Ctrl-C leaves a checkpoint of the end
+        self.note("-", "same bits")
 
 
 class RandomKills(Matrix):
@@ -604,7 +650,7 @@ if __name__ == "__main__":
         sys.argv.remove("--short")
         rosunit.unitrun("train_brake", "faults", Short)
     else:
-        program = unittest.main(exit=False, warnings="ignore")
+        program = unittest.main(exit=False, warnings="ignore", catchbreak=True)
         for row in table:
             print("| " + " | ".join(row) + " |")
         sys.exit(not program.result.wasSuccessful())
