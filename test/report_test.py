@@ -439,6 +439,10 @@ class ReportTest(unittest.TestCase):
         self.assertEqual((0, ""), (done.returncode, done.stderr))
         self.assertIn(f"wrote {run}/report.html", done.stdout)
         self.assertTrue((run / "report.html").exists())
+        # The next run into the folder takes it away: it would show another run.
+        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(run)], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.assertFalse((run / "report.html").exists())
 
     # In a browser
 
