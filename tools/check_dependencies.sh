@@ -35,6 +35,9 @@ forbid '(ros|rosbag|std_msgs|train_brake_msgs|ltd_master|wagon_node)/' \
   forbid 'train_dynamics/train/' \
     'vehicle/ stands below train/' $(layers vehicle)
 }
+forbid '(ros|tf2_ros|rviz|Q[A-Z]|[a-z_]+_msgs/)' 'what is drawn (board/) knows nothing of ROS, messages or windows' \
+  train_brake_rviz/include/train_brake_rviz/board train_brake_rviz/src/board
+forbid '(ltd_master|wagon_node)/' 'train_brake_rviz meets the run in train_brake_msgs only' train_brake_rviz
 forbid 'wagon_node/' 'ltd_master and wagon_node meet in train_brake_msgs only' ltd_master
 forbid 'ltd_master/' 'ltd_master and wagon_node meet in train_brake_msgs only' wagon_node
 
