@@ -64,7 +64,7 @@ run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results a
 rviz: deps-rviz build ## run at REAL_TIME_FACTOR (1; 0 = as fast as possible) and watch it in rviz; ends when rviz is closed
 	@[ -n "$$DISPLAY" ] || { echo "make rviz: there is no display here (DISPLAY is not set)" >&2; exit 1; }
 	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
-	  exchange_interval:=$(EXCHANGE_INTERVAL) rviz:=true real_time_factor:=$(REAL_TIME_FACTOR) || [ $$? = 130 ]
+	  exchange_interval:=$(EXCHANGE_INTERVAL) rviz:=true start_paused:=true real_time_factor:=$(REAL_TIME_FACTOR) || [ $$? = 130 ]
 
 .PHONY: paper
 paper: build ## all scenarios of the paper x three models; its tables and figures beside ours in results/paper/report.html

@@ -117,7 +117,7 @@ void RunPanel::ShowStatus(const RunStatus& status) {
     pace_->setValue(status.wanted_real_time_factor);
   }
   if (ended) ShowAnswer(true, "the run has ended");
-  if (!ended && !was_known) ShowAnswer(true, "");
+  if (!ended && !was_known) ShowAnswer(true, paused ? "ready: press Play" : "");
 }
 
 void RunPanel::ShowSelection(const ViewSelection& selection) {

@@ -108,12 +108,13 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, BoardPicture,
 TEST(Board, ColoursEachVehicleByItsValue) {
   const ScenarioParams scenario = Load("emergency");
   Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
-  snapshot.cylinder_pressure_pa.assign(242, 0.0);
-  snapshot.cylinder_pressure_pa[41] = 4e5;
+  snapshot.cylinder_pressure_pa.assign(242, 4e5);
+  snapshot.cylinder_pressure_pa[41] = 1.5e5;
+  snapshot.cylinder_pressure_pa[222] = 9e5;  // hardly any vehicle: does not move the scale's end
   Board board(scenario);
   const Quantity& pressure = *FindQuantity("pressure");
   const Picture picture = board.Draw(snapshot, {&pressure, 0});
-  const Rectangle vehicle = ExtentOf(picture.train, ColorOf(pressure, 400.0, 500.0));  // kPa; the scale's end
+  const Rectangle vehicle = ExtentOf(picture.train, ColorOf(pressure, 150.0, 500.0));  // kPa; the scale's end
   const double scale = layout::kTrain.width() / (1.012 * 242.0 * 10.5);
   EXPECT_NEAR(0.92 * 10.5 * scale, vehicle.width(), 1e-6);  // with a gap of 8 %
   const double middle = 0.5 * (vehicle.left + vehicle.right);

@@ -28,12 +28,13 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-double LargestSize(const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double value : values) {
-    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-  }
-  return largest;
+/// The size that a share of the values does not exceed.
+double SizeOf(double share, std::vector<double> values) {
+  for (double& value : values) value = std::isfinite(value) ? std::abs(value) : 0.0;
+  if (values.empty()) return 0.0;
+  const auto place = values.begin() + static_cast<long>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 std::string ModelText(train_dynamics::VehicleModel model) {
@@ -96,10 +97,12 @@ void Board::Forget() {
 void Board::Remember(const Snapshot& snapshot, const Selection& selection) {
   forces_seen_.Include(Scaled(snapshot.coupler_force_n, kKilo));
   pressures_seen_.Include(Scaled(snapshot.cylinder_pressure_pa, kKilo));
-  force_limit_kn_.Include(kKilo * LargestSize(snapshot.coupler_force_n));
-  pressure_limit_kpa_.Include(kKilo * LargestSize(snapshot.cylinder_pressure_pa));
+  force_limit_kn_.Include(kKilo * SizeOf(1.0, snapshot.coupler_force_n));
+  pressure_limit_kpa_.Include(kKilo * SizeOf(1.0, snapshot.cylinder_pressure_pa));
   const Quantity& quantity = *selection.quantity;
-  color_limit_.at(quantity.name).Include(quantity.per_si * LargestSize(quantity.values(snapshot)));
+  // Not all vehicles: one that meets a shock shall not pale all the others.
+  constexpr double kShare = 0.95;
+  color_limit_.at(quantity.name).Include(quantity.per_si * SizeOf(kShare, quantity.values(snapshot)));
 }
 
 Abscissa Board::AbscissaOf(const Snapshot& snapshot) const {
@@ -163,7 +166,11 @@ void Board::DrawForces(Drawing& drawing, const Snapshot& snapshot, const Absciss
   const double limit = force_limit_kn_.value();
   const AlongPlot plot(area, {-limit, limit, area.bottom, area.top}, abscissa);
   plot.DrawAxes(drawing, "coupler force [kN]; grey: seen so far", VehicleGrid(snapshot));
-  if (snapshot.coupler_force_n.empty()) return;
+  if (snapshot.coupler_force_n.empty()) {
+    drawing.Write(area.Centre(), Align::kCentre, layout::kText,
+                  vehicles() == 1 ? "no couplers" : "not recorded", palette::kDark);
+    return;
+  }
 
   const std::vector<double> force = Scaled(snapshot.coupler_force_n, kKilo), zero(force.size(), 0.0);
   const std::vector<double>& edges = snapshot.position_m;  // a connection's bar ends at the vehicles' centres
@@ -200,7 +207,10 @@ void Board::DrawPressures(Drawing& drawing, const Snapshot& snapshot, const Absc
                   std::to_string(vehicle - snapshot.position_m.begin() + 1));
   }
   drawing.Write({area.left - 1.0, area.bottom - kNumberBelow}, Align::kRight, layout::kSmallText, "vehicle");
-  if (snapshot.cylinder_pressure_pa.empty()) return;
+  if (snapshot.cylinder_pressure_pa.empty()) {
+    drawing.Write(area.Centre(), Align::kCentre, layout::kText, "not recorded", palette::kDark);
+    return;
+  }
 
   const std::vector<double> pressure = Scaled(snapshot.cylinder_pressure_pa, kKilo),
                             zero(pressure.size(), 0.0);

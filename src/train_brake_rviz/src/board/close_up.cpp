@@ -116,6 +116,7 @@ void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::TrackParams& trac
 void CloseUp::DrawBodies(Drawing& drawing, const BodyVector<double>& position, Color body) const {
   const auto outline = [&](int b, const std::vector<Point>& corners_m, Color fill, Layer layer) {
     std::vector<Point> corners;
+    corners.reserve(corners_m.size() + 1);
     for (const Point& corner : corners_m) corners.push_back(PlaceOf(position, b, corner.right, corner.up));
     drawing.On(layer);
     drawing.Polygon(corners, fill);
