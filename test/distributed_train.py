@@ -82,6 +82,13 @@ def wagon_nodes():
     return found
 
 
+def share_memory(processes):
+    """Whether all of these, or none, have memory in common with a master."""
+    found = {"/memfd:train_brake" in pathlib.Path(f"/proc/{process}/maps").read_text() for process in processes}
+    assert len(found) == 1, found
+    return found.pop()
+
+
 def wait_until(condition, timeout_s):
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
@@ -115,7 +122,7 @@ class DistributedTrain(unittest.TestCase):
     def test_same_as_in_one_process_for_every_number_of_nodes(self):
         expected = train_sim()
         for arguments in (["nodes:=1"], ["nodes:=3"], ["nodes:=6"], ["nodes:=2", "threads:=2"],
-                          ["nodes:=3", "client:=blocking"]):
+                          ["nodes:=3", "shared_memory:=false"], ["nodes:=3", "client:=blocking"]):
             with self.subTest(arguments):
                 self.assert_complete(self.launch(*arguments), expected)
 
@@ -220,6 +227,16 @@ class DistributedTrain(unittest.TestCase):
         self.assertGreaterEqual(last.max_tension_n, 0)
         self.assertLessEqual(last.max_compression_n, 0)
 
+    def test_nodes_on_this_machine_share_memory_with_the_master_unless_told_not_to(self):
+        for choice in (True, False):
+            launch = self.launch("nodes:=2", "start_paused:=true", f"shared_memory:={str(choice).lower()}")
+            rospy.wait_for_service("/train/master/step", 60)
+            self.assertTrue(rospy.ServiceProxy("/train/master/step", StepExchanges)(1).success)
+            self.assertEqual(2, len(wagon_nodes()))
+            self.assertEqual(choice, share_memory(wagon_nodes()))
+            launch.end()
+            self.assertTrue(wait_until(lambda: not wagon_nodes(), 20))
+
     def test_names_are_what_a_ros_user_expects(self):
         launch = self.launch("nodes:=3", "start_paused:=true")
         rospy.wait_for_service("/train/master/step", 60)
@@ -293,6 +310,7 @@ class DistributedTrain(unittest.TestCase):
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         self.assertTrue(wait_until(lambda: len(wagon_nodes()) == 2, 30))
         rospy.wait_for_message("/train/state", TrainState, 60)  # under way
+        self.assertTrue(share_memory(wagon_nodes()))  # which has no name: it goes with the last of them
         os.killpg(master.pid, signal.SIGKILL)
         master.wait()
         self.assertTrue(wait_until(lambda: not wagon_nodes(), 20), "wagon nodes still there after 20 s")

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 #include <signal.h>
 #include <sys/wait.h>
+#include <train_brake_msgs/exchange_memory.h>
 #include <unistd.h>
 
 #include <array>
@@ -34,6 +35,18 @@ using train_dynamics::config::LoadedScenario;
 
 constexpr int kVehicles = 6;
 constexpr int kBlockingThreads = 2;
+
+/// How calls reach the ranks.
+enum class Path { kMemory, kTcp, kBlocking };
+std::string PathName(const testing::TestParamInfo<Path>& test) {
+  return test.param == Path::kMemory ? "Memory" : test.param == Path::kTcp ? "Tcp" : "Blocking";
+}
+void Choose(Path path, RosTransportOptions& options) {
+  options.blocking_threads = path == Path::kBlocking ? kBlockingThreads : 0;
+  options.shared_memory = path == Path::kMemory;
+}
+constexpr Path kPaths[] = {Path::kMemory, Path::kTcp, Path::kBlocking};
+
 // Wall times of events that need none: processes start, die and answer; the machine may be busy.
 constexpr double kSoon = 10.0;
 
@@ -122,11 +135,11 @@ class WagonProcess {
 };
 
 /// A train whose first rank is a process of our own, and the second one of the launch file's.
-class LostRank : public testing::TestWithParam<int> {
+class LostRank : public testing::TestWithParam<Path> {
  protected:
   void Start(const RosTransportOptions& base) {
     RosTransportOptions options = base;
-    options.blocking_threads = GetParam();
+    Choose(GetParam(), options);
     options.recover = false;  // what a loss looks like when it ends the run
     std::vector<Rank> ranks = train_dynamics::SplitRanks(kVehicles, 2);
     ranks[0].name = "/own/" + name_;
@@ -203,21 +216,19 @@ TEST_P(LostRank, LateIsMentionedAndThenGoesOn) {
   EXPECT_FALSE(transport_->timing().was_late);
 }
 
-std::string CallerName(const testing::TestParamInfo<int>& test) {
-  return test.param == 0 ? "Asynchronous" : "Blocking";
-}
-INSTANTIATE_TEST_SUITE_P(Callers, LostRank, testing::Values(0, kBlockingThreads), CallerName);
+INSTANTIATE_TEST_SUITE_P(Paths, LostRank, testing::ValuesIn(kPaths), PathName);
 
 /// A train of six ranks, the first three of which are processes of our own.
-class LostAndFound : public testing::TestWithParam<int> {
+class LostAndFound : public testing::TestWithParam<Path> {
  protected:
   void SetUp() override {
     for (int rank = 0; rank < kOwn; ++rank) {
       ranks_[rank].name = "/own/wagon_" + std::to_string(NextRun());
       StartProcess(rank);
     }
-    caller_ = GetParam() == 0 ? ltd_master::MakeAsynchronousCaller(ranks_, run_)
-                              : ltd_master::MakeBlockingCaller(ranks_, kVehicles);
+    caller_ = GetParam() == Path::kBlocking
+                  ? ltd_master::MakeBlockingCaller(ranks_, kVehicles)
+                  : ltd_master::MakeAsynchronousCaller(ranks_, GetParam() == Path::kMemory ? run_ : 0);
     messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run_,
                                                            train_dynamics::config::Write(scenario_.params));
     for (int rank = 0; rank < kVehicles; ++rank) Connect(rank);
@@ -319,7 +330,112 @@ TEST_P(LostAndFound, OneThatIsCalledAloneMayBeLostAlone) {
   EXPECT_EQ(Exchange(2).size(), 2u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Callers, LostAndFound, testing::Values(0, kBlockingThreads), CallerName);
+INSTANTIATE_TEST_SUITE_P(Paths, LostAndFound, testing::ValuesIn(kPaths), PathName);
+
+/// A rank that does in its slot what no wagon node would.
+class OddRank : public testing::Test {
+ protected:
+  void SetUp() override {
+    services_ = {node_.advertiseService(name_ + "/configure", &OddRank::Configure, this),
+                 node_.advertiseService(name_ + "/step", &OddRank::Step, this)};
+    spinner_.start();
+    const std::uint64_t run = NextRun();
+    ranks_[0].name = name_;
+    caller_ = ltd_master::MakeAsynchronousCaller(ranks_, run);
+    for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+      while (!caller_->Connect(static_cast<int>(rank)).empty()) {
+      }
+    }
+    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run,
+                                                           train_dynamics::config::Write(scenario_.params));
+    ltd_master::LateWatch watch(ranks_, "test", kSoon, interrupted_);
+    ASSERT_TRUE(caller_->Call(messages_->configure, watch).lost.empty());
+  }
+  ~OddRank() override { spinner_.stop(); }
+
+  bool Configure(train_brake_msgs::ConfigureRequest& request, train_brake_msgs::ConfigureResponse& response) {
+    memory_ = std::make_unique<train_brake_msgs::ExchangeMemory>(request.memory_pid,
+                                                                 request.memory_descriptor, request.run_id);
+    slot_ = request.memory_slot;
+    response.ok = response.memory_used = true;
+    return true;
+  }
+  bool Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
+    response.ok = true;
+    response.exchange = request.exchange;
+    response.message = "by TCP";
+    return true;
+  }
+
+  /// One exchange, in which the odd rank does something to its letter.
+  template <class Action>
+  ltd_master::CallOutcome Exchange(Action action) {
+    train_dynamics::ExchangeRequest request;
+    request.dt_s = scenario_.params.dt_s;
+    request.steps = scenario_.params.StepsPerExchange();
+    request.coupler_force_n.assign(kVehicles + 1, 0.0);
+    request.cylinder_pressure_pa.assign(kVehicles, 0.0);
+    messages_->Pack(request);
+    train_brake_msgs::ExchangeHead& head = memory_->head();
+    std::thread rank([&] {
+      for (std::uint32_t heard = head.requests.rings(); memory_->request(slot_).call() == 0;) {
+        head.requests.Wait(heard, 0.1);
+      }
+      action(memory_->reply(slot_), memory_->request(slot_).call(), memory_->layout().reply_room);
+      head.unreplied.fetch_sub(1);
+      head.replies.Ring();
+    });
+    ltd_master::LateWatch watch(ranks_, "test", kSoon, interrupted_);
+    const ltd_master::CallOutcome outcome = caller_->Call(messages_->step, watch);
+    rank.join();
+    return outcome;
+  }
+
+  const LoadedScenario scenario_ = Load();
+  const std::function<bool()> interrupted_ = [] { return false; };
+  const std::string name_ = "/odd/wagon_" + std::to_string(NextRun());
+  ros::NodeHandle node_;
+  ros::AsyncSpinner spinner_{2};
+  std::vector<ros::ServiceServer> services_;
+  std::vector<Rank> ranks_ = RanksIn("/ranks_3", 3);
+  std::unique_ptr<ltd_master::RankCaller> caller_;
+  std::unique_ptr<ltd_master::RankMessages> messages_;
+  std::unique_ptr<train_brake_msgs::ExchangeMemory> memory_;
+  std::uint32_t slot_ = 0;
+};
+
+TEST_F(OddRank, WhoseReplyDoesNotFitIsAskedByTcp) {
+  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
+    train_brake_msgs::StepResponse reply;
+    reply.message.assign(room, 'x');
+    EXPECT_FALSE(letter.Write(call, reply, room));
+  });
+  EXPECT_TRUE(outcome.lost.empty());
+  EXPECT_EQ(messages_->step[0].response.message, "by TCP");
+  for (const int rank : {1, 2}) EXPECT_TRUE(messages_->step[rank].response.ok);
+}
+
+TEST_F(OddRank, WhoseReplyCannotBeReadIsLost) {
+  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
+    letter.Write(call, std::string("no reply"), room);
+  });
+  ASSERT_EQ(outcome.lost.size(), 1u);
+  EXPECT_EQ(outcome.lost[0].rank, 0);
+  for (const int rank : {1, 2}) EXPECT_TRUE(messages_->step[rank].response.ok);
+  EXPECT_EQ(caller_->Connect(0), "");  // anew
+}
+
+TEST_F(OddRank, WhoseReplyIsToAnotherCallIsWaitedFor) {
+  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
+    train_brake_msgs::StepResponse reply;
+    letter.Write(call + 1, reply, room);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    reply.message = "at last";
+    letter.Write(call, reply, room);
+  });
+  EXPECT_TRUE(outcome.lost.empty());
+  EXPECT_EQ(messages_->step[0].response.message, "at last");
+}
 
 TEST(Wire, CarriesTheBitsOfTheTrainInOneProcess) {
   for (const char* model : {"2d", "ltd"}) {
@@ -328,11 +444,10 @@ TEST(Wire, CarriesTheBitsOfTheTrainInOneProcess) {
     const std::vector<std::uint64_t> expected = Fingerprint(scenario, in_process);
     const std::string text = train_dynamics::config::Write(scenario.params);
     for (const int ranks : {1, 3, kVehicles}) {
-      for (const int blocking_threads : {0, kBlockingThreads}) {
-        SCOPED_TRACE(std::string(model) + ", ranks: " + std::to_string(ranks) +
-                     ", blocking threads: " + std::to_string(blocking_threads));
+      for (const Path path : kPaths) {
+        SCOPED_TRACE(std::string(model) + ", ranks: " + std::to_string(ranks) + ", " + PathName({path, 0}));
         RosTransportOptions options;
-        options.blocking_threads = blocking_threads;
+        Choose(path, options);
         RosTransport transport(RanksIn("/ranks_" + std::to_string(ranks), ranks), NextRun(), text, options);
         EXPECT_EQ(Fingerprint(scenario, transport), expected);
       }

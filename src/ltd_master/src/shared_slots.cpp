@@ -9,7 +9,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "train_dynamics/vehicle/work.h"
+#include "train_dynamics/train/snapshot.h"
+#include "train_dynamics/vehicle/wagon.h"
 
 namespace ltd_master {
 namespace {
@@ -40,6 +41,9 @@ std::uint32_t ReplyRoom(int vehicles) {
   record.state_digest.resize(count);
   record.dissipated_j.resize(count * train_dynamics::kDissipations);
   record.details.resize(count);
+  train_dynamics::BlockSnapshot snapshot;
+  snapshot.state.resize(count * sizeof(train_dynamics::WagonState<double>) / sizeof(double));
+  reply.snapshot = train_dynamics::Encode(snapshot);
   return ros::serialization::serializationLength(reply) + kTextRoom;
 }
 
