@@ -1,0 +1,80 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/vehicle/vehicle_batch.h"
+
+namespace train_dynamics::bench {
+
+inline constexpr double kTimeStep = 1e-3;  // [s]
+inline constexpr int kVehicles = 242;
+
+inline config::LoadedScenario Emergency(const std::vector<std::string>& overrides) {
+  return config::LoadScenario(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios/emergency.yaml", overrides);
+}
+
+/// So low that the brake holds a wheel that slides.
+inline constexpr const char* kSlippery = "wheel_rail.adhesion.friction_coefficient=0.02";
+
+/// The vehicle of the paper's train.
+inline VehicleParams OreWagon(const std::vector<std::string>& overrides = {}) {
+  return config::LoadVehicle(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/vehicles/ore_wagon.yaml", overrides);
+}
+
+/// Vehicles in the middle of a stop and what acts on them; no two under the same load.
+template <class Vehicle>
+class MovingVehicles {
+ public:
+  using State = typename VehicleBatch<Vehicle>::State;
+
+  /// @param start  every vehicle's state, about 80 km/h; two seconds under the brake follow
+  MovingVehicles(Vehicle vehicle_, const State& start)
+      : vehicle(std::move(vehicle_)), states(kVehicles, start) {
+    for (int i = 0; i <= kVehicles; ++i) {
+      const double share = static_cast<double>(i) / kVehicles;
+      coupler_force_n_.push_back(4e5 * (share - 0.5));
+      cylinder_pressure_pa_.push_back(3.3e5 + 1e5 * share);
+    }
+    head_displacement_m_.resize(kVehicles);
+    head_velocity_mps_.resize(kVehicles);
+    VehicleBatch<Vehicle> batch(vehicle, BestLaneKernels(), states);
+    batch.Advance(track, kTimeStep, 2000, arrays(), true);
+    for (int i = 0; i < kVehicles; ++i) states[i] = batch.StateOf(i);
+  }
+
+  VehicleArrays arrays() {
+    return {&coupler_force_n_[0], &coupler_force_n_[1], &cylinder_pressure_pa_[0], &head_displacement_m_[0],
+            &head_velocity_mps_[0]};
+  }
+
+  Vehicle vehicle;
+  TrackParams track;
+  std::vector<State> states;
+
+ private:
+  std::vector<double> coupler_force_n_, cylinder_pressure_pa_, head_displacement_m_, head_velocity_mps_;
+};
+
+inline MovingVehicles<Wagon> RollingWagons() {
+  const Wagon wagon(OreWagon());
+  return {wagon, StaticEquilibrium(wagon, 0.0, 80.0 / 3.6)};
+}
+
+/// Wagons that slide with all wheels locked.
+inline MovingVehicles<Wagon> SlidingWagons() {
+  const Wagon wagon(OreWagon({kSlippery}));
+  WagonState<double> start = StaticEquilibrium(wagon, 0.0, 80.0 / 3.6);
+  for (int i = 0; i < kWheelsets; ++i) start.velocity.pitch[kWheelset1 + i] = 0.0;
+  return {wagon, start};
+}
+
+inline MovingVehicles<LtdVehicle> RollingLtdVehicles() {
+  LtdState<double> start;
+  start.v_mps = 80.0 / 3.6;
+  return {LtdVehicle(OreWagon(), true), start};
+}
+
+}  // namespace train_dynamics::bench
