@@ -1,0 +1,71 @@
+"""Measures the simulator on this machine: one table to the terminal, the same with words to docs/performance.md.
+
+Every section leaves its results in results/bench/, so that one alone can be measured again.
+"""
+import argparse
+import dataclasses
+import importlib
+import json
+import sys
+import time
+
+import machine
+import measure
+import page
+import targets
+import workspace
+from table import Table, as_text
+
+SECTIONS = ["vehicles", "runs", "scaling", "exchange", "graph", "intervals", "limit"]
+RESULTS = workspace.ROOT / "results" / "bench"
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="make bench", description=__doc__, epilog="sections: " + " ".join(SECTIONS))
+    parser.add_argument("--only", default="", metavar="NAME,...",
+                        help="measure these sections; the others keep their results")
+    arguments = parser.parse_args()
+    chosen = [name for name in arguments.only.replace(",", " ").split()] or SECTIONS
+    unknown = [name for name in chosen if name not in SECTIONS]
+    if unknown:
+        parser.error(f"{unknown[0]} is not a section; the sections are {', '.join(SECTIONS)}")
+
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    for name in chosen:
+        print(f"{name} ...", file=sys.stderr, flush=True)
+        begin = time.monotonic()
+        try:
+            tables, facts = importlib.import_module(name).run()
+        except measure.Failed as failure:
+            sys.exit(f"make bench: {name}: {failure}")
+        result = {"machine": machine.describe(), "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
+        (RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
+        print(f"{name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
+
+    results = _load()
+    tables = {name: [Table(**t) for t in result["tables"]] for name, result in results.items()}
+    summary = targets.table({name: result["facts"] for name, result in results.items()})
+    print(as_text([summary, *(t for name in SECTIONS for t in tables.get(name, []))]))
+    page.write(machine.describe(), summary, tables)
+
+
+def _load():
+    """Results of this machine, by section."""
+    results = {}
+    for name in SECTIONS:
+        file = RESULTS / f"{name}.json"
+        if not file.exists():
+            continue
+        result = json.loads(file.read_text())
+        if result["machine"] == [list(pair) for pair in machine.describe()]:
+            results[name] = result
+        else:
+            print(f"{file.relative_to(workspace.ROOT)} is of another machine: left out", file=sys.stderr)
+    return results
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,87 @@
+"""Where the programs are and how they are called."""
+import json
+import os
+import pathlib
+import shutil
+import socket
+import tempfile
+import time
+
+import measure
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAMS = ROOT / "devel" / "lib"
+EMERGENCY = ROOT / "config" / "scenarios" / "emergency.yaml"
+VEHICLES = 242
+
+
+def program(package, name):
+    path = PROGRAMS / package / name
+    if not path.exists():
+        raise measure.Failed(f"{path.relative_to(ROOT)} is missing: `make bench` builds it")
+    return path
+
+
+def bench(name):
+    return measure.google_benchmark(program("train_dynamics", name))
+
+
+def train_sim(*arguments, settings=(), scenario=EMERGENCY):
+    """Runs a scenario; the Run, with its summary."""
+    command = [program("ltd_master", "train_sim"), "run", scenario, *arguments]
+    for setting in settings:
+        command += ["--set", setting]
+    run = measure.Run(command)
+    run.summary = json.loads(run.stdout)
+    return run
+
+
+def train_sim_into(folder, *arguments, **options):
+    """The same with results in a folder that is new, and gone afterwards."""
+    with tempfile.TemporaryDirectory(dir=folder) as out:
+        return train_sim(*arguments, "--out", out, **options)
+
+
+class Launch:
+    """A roslaunch of the emergency stop on a ROS master of its own: its summary, wall_s of the run, start_s, stop_s."""
+
+    def __init__(self, nodes, *arguments, record=False, settings=(), timeout_s=600):
+        with tempfile.TemporaryDirectory() as folder:
+            out, status = pathlib.Path(folder) / "out", pathlib.Path(folder) / "status"
+            port = _free_port()
+            os.environ.update(ROS_MASTER_URI=f"http://localhost:{port}", ROS_LOG_DIR=f"{folder}/log")
+            begin = time.time()
+            measure.Run(["roslaunch", "-p", port, "train_brake", "train.launch", f"nodes:={nodes}", *arguments,
+                         f"out:={out}", f"record:={str(record).lower()}", f"set:={' '.join(settings)}",
+                         f"exit_status_file:={status}", "startup_timeout:=120"], timeout_s)
+            end = time.time()
+            if not status.exists() or status.read_text().strip() != "0":
+                raise measure.Failed(f"the launch with {' '.join([f'nodes:={nodes}', *arguments])} failed")
+            self.summary = measure.summary_of(out)
+            finished = (out / "summary.json").stat().st_mtime
+            self.wall_s = self.summary["wall_s"]
+            self.start_s = finished - self.wall_s - begin
+            self.stop_s = end - finished
+
+    def per_exchange_s(self):
+        return per_exchange_s(self.summary)
+
+
+def per_exchange_s(summary):
+    return summary["wall_s"] * summary["exchange_interval_s"] / summary["simulated_s"]
+
+
+def mpi_train(ranks, settings):
+    """The same exchange over MPI; what it printed, or None without MPI."""
+    if shutil.which("mpirun") is None or not (PROGRAMS / "train_dynamics" / "mpi_train").exists():
+        return None
+    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    run = measure.Run(["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", ranks + 1,
+                       program("train_dynamics", "mpi_train"), EMERGENCY, *settings])
+    return json.loads(run.stdout)
+
+
+def _free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
