@@ -5,7 +5,8 @@
 
 namespace train_dynamics {
 
-/// Propulsion resistance of a vehicle, in newtons per kilonewton of its weight.
+/// Propulsion resistance of a vehicle (paper Eq 5), in newtons per kilonewton of its weight: RollingResistance +
+/// AirDrag.
 struct PropulsionResistanceParams {
   double constant_n_per_kn = kRequired;        ///< a
   double linear_n_per_kn_kmh = kRequired;      ///< b
@@ -36,12 +37,6 @@ T AirDrag(const PropulsionResistanceParams& p, double weight_n, T speed) {
   const double weight_kn = 1e-3 * weight_n;
   const T v_kmh = 3.6 * speed;
   return weight_kn * p.quadratic_n_per_kn_kmh2 * (v_kmh * v_kmh);
-}
-
-/// Propulsion resistance of the whole vehicle [N], even in the speed (paper Eq 5): R_w + R_a.
-template <class T>
-T PropulsionResistance(const PropulsionResistanceParams& p, double weight_n, T speed) {
-  return RollingResistance(p, weight_n, speed) + AirDrag(p, weight_n, speed);
 }
 
 }  // namespace train_dynamics
