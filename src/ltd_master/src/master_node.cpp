@@ -156,7 +156,7 @@ int MasterNode::Run() {
   const train_dynamics::ScenarioParams& scenario = scenario_.params;
   const std::unique_ptr<RunOutput> output =
       resumed_ ? std::make_unique<RunOutput>(options_.output, *resumed_)
-               : std::make_unique<RunOutput>(options_.output, options_.scenario, scenario);
+               : std::make_unique<RunOutput>(options_.output, scenario_.files, scenario);
   const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
   TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
   train_dynamics::RunSummary summary(scenario);

@@ -122,7 +122,7 @@ int RunScenario(const RunOptions& options) {
       [](const std::string& what) { fmt::print(stderr, "\ntrain_sim: {}\n", what); }};
   if (options.resume.empty()) {
     const LoadedScenario scenario = Load(options);
-    RunOutput output(output_options, options.scenario, scenario.params);
+    RunOutput output(output_options, scenario.files, scenario.params);
     return Run(scenario, options, nullptr, output);
   }
   const ResumedRun run = LoadResumedRun(options.resume, Overrides(options));

@@ -94,18 +94,17 @@ void WriteFile(const fs::path& file, const std::string& text) {
   fs::rename(unfinished, file);
 }
 
-RunOutput::RunOutput(const OutputOptions& options, const std::string& scenario_file,
+RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& inputs,
                      const ScenarioParams& scenario)
     : options_(options),
       folder_(options.folder),
       identity_(IdentityOf(scenario)),
       checkpoint_exchanges_(CheckpointExchanges(options, scenario)) {
   if (folder_.empty()) return;
-  for (const std::string& input : {scenario_file, scenario.pressure_table}) {
-    if (!input.empty() && FolderOf(input) == fs::weakly_canonical(fs::absolute(folder_))) {
-      throw std::runtime_error(options.folder + " is the folder of " + input +
-                               ": choose another for the results");
-    }
+  for (const fs::path& input : inputs) {
+    if (FolderOf(input) != fs::weakly_canonical(fs::absolute(folder_))) continue;
+    throw std::runtime_error(options.folder + " is the folder of " + input.string() +
+                             ", of which the scenario is made: choose another for the results");
   }
   PrepareFolder(folder_);
   WriteResolvedConfig(scenario, folder_);

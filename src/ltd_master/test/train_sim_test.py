@@ -193,6 +193,16 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("is the folder of", done.stderr)
         self.assertEqual(before, (self.out / "config.yaml").read_text())
 
+    def test_what_a_scenario_starts_from_is_never_overwritten(self):
+        self.run_ok(DIP, "--out", self.out, *SHORT)
+        before = (self.out / "config.yaml").read_text()
+        scenario = self.write("mine.yaml", "base: out/config.yaml\nduration_s: 0.2\n")
+        done = train_sim("run", scenario, "--out", self.out)
+        self.assertEqual(1, done.returncode)
+        self.assertIn("config.yaml, of which the scenario is made: choose another for the results", done.stderr)
+        self.assertEqual(before, (self.out / "config.yaml").read_text())
+        self.run_ok(scenario, "--out", str(self.out) + "2")
+
     def test_a_second_run_replaces_the_first(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--csv", "--set", "duration_s=0.02")
         self.run_ok(DIP, "--out", self.out, *SHORT)

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ltd_master/bag_recorder.h"
 #include "ltd_master/csv_recorder.h"
@@ -40,8 +41,9 @@ struct OutputOptions {
 class RunOutput {
  public:
   /// Makes the folder, clears it of the results of an earlier run and writes config.yaml.
-  /// @throws std::exception if that cannot be done, or if an input of the run lies in this very folder
-  RunOutput(const OutputOptions& options, const std::string& scenario_file,
+  /// @param inputs  the files of which the scenario was made
+  /// @throws std::exception if that cannot be done, or if one of the inputs lies in this very folder
+  RunOutput(const OutputOptions& options, const std::vector<std::filesystem::path>& inputs,
             const train_dynamics::ScenarioParams& scenario);
 
   /// Goes on with the results of a run, or copies them, in a branch, to a folder of its own.

@@ -125,7 +125,9 @@ void JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
   std::optional<Consist> consist;
   PressureSource pressures;
+  std::vector<std::filesystem::path> files;
   const auto judge = [&](ScenarioParams& params, Reader& rules) {
+    files = rules.Files();
     JudgeWagons(params, rules);
     consist.emplace(params.train);
     if (!params.pressure_table.empty()) {
@@ -143,9 +145,11 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
   ThrowIfAny(errors);
   if (!params.pressure_table.empty()) {
     pressures = ReadPressureTable(params.pressure_table, consist->vehicles());
+    files.emplace_back(params.pressure_table);
   }
   std::vector<std::string> warnings = Warnings(params);
-  return {std::move(params), std::move(*consist), std::move(pressures), std::move(warnings)};
+  return {std::move(params), std::move(*consist), std::move(pressures), std::move(warnings),
+          std::move(files)};
 }
 
 LoadedScenario LoadScenarioText(const std::string& text, const std::string& label) {

@@ -84,6 +84,12 @@ NodePtr PartLibrary::Open(const fs::path& file, const KeyPath& path) {
   return cached->second = Parse(*text, {DisplayPath(file), folder, folder}, path);
 }
 
+std::vector<fs::path> PartLibrary::Files() const {
+  std::vector<fs::path> files;
+  for (const auto& [file, root] : files_) files.push_back(file);
+  return files;
+}
+
 NodePtr PartLibrary::OpenText(const std::string& text, const std::string& label, const KeyPath& path) {
   if (text.size() > YamlLimits::kBytes) {
     errors_.Add(

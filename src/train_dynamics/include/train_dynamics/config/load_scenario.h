@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ struct LoadedScenario {
   ScenarioParams params;
   Consist consist;
   PressureSource pressures;
-  std::vector<std::string> warnings;  ///< see Warnings()
+  std::vector<std::string> warnings;           ///< see Warnings()
+  std::vector<std::filesystem::path> files{};  ///< all that were read
 };
 
 /// Reads a scenario with all of its parts, and its pressure table if it names one.

@@ -35,6 +35,9 @@ class PartLibrary {
   /// @param chain  the files that must not be entered again; those that are entered are appended
   NodePtr Resolve(const NodePtr& node, const std::string& kind, const KeyPath& path, FileChain& chain);
 
+  /// The files that were opened so far.
+  std::vector<std::filesystem::path> Files() const;
+
  private:
   NodePtr Parse(const std::string& text, Document document, const KeyPath& path);
   /// @param key  the path of the reference itself: that of the part, or of its base

@@ -76,6 +76,9 @@ class Reader {
   /// written, or the working directory for an override. Empty if the key was not given.
   std::filesystem::path FolderOf(const std::string& key);
 
+  /// All files of the configuration that were read so far.
+  std::vector<std::filesystem::path> Files() const { return session_.library.Files(); }
+
   template <class Enum>
   void Choice(const char* key, Enum& value, Choices<Enum> choices) {
     std::vector<std::string> names;
