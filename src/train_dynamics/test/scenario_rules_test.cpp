@@ -225,6 +225,60 @@ TEST_F(ScenarioRules, DipsUnderTheStandingTrain) {
   EXPECT_EQ(ErrorsOf(Scenario("dip"), {"start_position_m=56"}), "");  // the rear at 50.75 m, the dip to 50 m
 }
 
+TEST_F(ScenarioRules, HugeCountsAreRefusedBeforeAnythingIsMadeOfThem) {
+  const std::string count = "train.consist[0].count";
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {count + "=1e9"}),
+            "--set " + count + "=1e9: " + count + " must be in [1, 100000], got 1e9");
+  EXPECT_EQ(ErrorsOf(Scenario("dip"), {count + "=1e99"}),
+            "--set " + count + "=1e99: " + count + " must be in [1, 100000], got 1e99");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("emergency"), {"model=ltd", "detail_vehicles=[]", "train.consist[1].count=99900"}),
+      "trains/paper_242.yaml:6: train.consist must have at most 100000 vehicles in all");
+
+  std::string flood = "base: full_service\ncommands:\n";
+  for (int i = 0; i < 15000; ++i) flood += "- {time_s: 1, kind: apply, reduction_kpa: 100}\n";
+  EXPECT_EQ(ErrorsOf(Put("scenarios/flood.yaml", flood)),
+            "scenarios/flood.yaml:3: commands must list at most 13774 commands for 242 vehicles and 3 brake "
+            "sources");
+  std::string sources = "base: dip\nbrake:\n  base: single_vehicle\n  sources:\n";
+  for (int i = 0; i < 101; ++i) sources += "  - {vehicle: 1}\n";
+  EXPECT_EQ(ErrorsOf(Put("scenarios/sources.yaml", sources)),
+            "scenarios/sources.yaml:5: brake.sources must list at most 100 sources");
+}
+
+TEST_F(ScenarioRules, FilesThatAreSomethingElse) {
+  fs::copy_file(root_ / "vehicles/ore_wagon.yaml", root_ / "trains/swapped.yaml");
+  const std::string swapped = ErrorsOf(Scenario("dip"), {"train=swapped"});
+  EXPECT_EQ(swapped.find("trains/swapped.yaml:"), 0u) << swapped;
+  EXPECT_NE(swapped.find("train.length_m is not a known key; known keys: name, connection, consist"),
+            std::string::npos)
+      << swapped;
+  const std::string table = Put("t.csv", "time_s,vehicle_1_pa\n0,0\n");
+  EXPECT_EQ(ErrorsOf(table), "t.csv:1: must hold a map of keys and values, got 'time_s,vehicle_1_pa 0,0'");
+  EXPECT_EQ(ErrorsOf(Scenario("single_wagon_stop"), {"pressure_table=" + Scenario("dip")})
+                .find("scenarios/dip.yaml:"),
+            0u);
+  const std::string truncated =
+      Put("scenarios/cut.yaml", "base: dip\ntrack: {name: x, grades: [{from_m: 0, gra");
+  EXPECT_EQ(ErrorsOf(truncated).find("scenarios/cut.yaml:2: "), 0u) << ErrorsOf(truncated);
+}
+
+TEST_F(ScenarioRules, HostileTracks) {
+  const std::string file = Put("scenarios/a.yaml",
+                               "base: dip\ntrack:\n  name: t\n  grades:\n"
+                               "  - {from_m: nan, grade_percent: steep}\n"
+                               "  - {from_m: 1e400, grade_percent: -1e9}\n"
+                               "  dips:\n  - {from_m: 40, depth_m: -1, length_m: 0}\n");
+  EXPECT_EQ(
+      ErrorsOf(file),
+      "scenarios/a.yaml:5: track.grades[0].from_m must be a finite number, got 'nan'\n"
+      "scenarios/a.yaml:5: track.grades[0].grade_percent must be a number, got 'steep'\n"
+      "scenarios/a.yaml:6: track.grades[1].from_m must be a number within the range of double precision, got "
+      "'1e400'\n"
+      "scenarios/a.yaml:6: track.grades[1].grade_percent must be in [-20, 20], got -1e9\n"
+      "scenarios/a.yaml:8: track.dips[0].length_m must be > 0, got 0");
+}
+
 TEST_F(ScenarioRules, UnitsOfNoVehicles) {
   const std::string unit = "train.consist[0].vehicles_per_unit";
   EXPECT_EQ(ErrorsOf(Scenario("dip"), {unit + "=0"}),

@@ -123,6 +123,16 @@ void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {
 
 void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
   if (!brake || !pressure_table.empty()) return;
+  constexpr std::size_t kMostArrivals = 10000000;  // a second and half a gigabyte
+  const std::size_t per_command = brake->sources.size() * static_cast<std::size_t>(train.VehicleCount());
+  if (commands.size() * per_command > kMostArrivals) {
+    broken.push_back({"commands",
+                      "must list at most " + std::to_string(kMostArrivals / per_command) + " commands for " +
+                          std::to_string(train.VehicleCount()) + " vehicles and " +
+                          std::to_string(brake->sources.size()) + " brake sources",
+                      {"brake", "train"}});
+    return;
+  }
   const std::vector<double>& measured = brake->service.reduction_kpa;
   const bool releases = std::any_of(brake->sources.begin(), brake->sources.end(),
                                     [](const BrakeSourceParams& source) { return source.releases; });

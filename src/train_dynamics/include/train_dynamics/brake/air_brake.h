@@ -104,6 +104,7 @@ struct AirBrakeParams {
     v.Group("emergency", emergency);
     v.Group("release", release);
     v.Check(!sources.empty(), "sources", "must list at least one source");
+    v.Check(sources.size() <= 100, "sources", "must list at most 100 sources");
   }
 };
 
