@@ -116,8 +116,9 @@ BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
     if (std::filesystem::file_size(file + ".active") < size_) {
       throw std::runtime_error(file + ".active is shorter than it was at the checkpoint");
     }
-    if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) Fail();
+    Truncate();
     WriteFileHeader(0, 0);
+    kept_chunks_ = chunks_.size();
   } catch (...) {
     close(descriptor_);
     throw;
@@ -126,6 +127,7 @@ BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
 
 Bytes BagWriter::Checkpoint() {
   WriteChunk();
+  kept_chunks_ = chunks_.size();
   ByteWriter writer;
   writer.Add(size_);
   writer.Add(std::uint64_t{connections_.size()});
@@ -211,9 +213,14 @@ void BagWriter::WriteChunk() {
   }
 }
 
+/// Cuts off what is behind the last whole chunk.
+void BagWriter::Truncate() {
+  if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) Fail();
+}
+
 /// Writes what stands behind the last chunk - all connections and where the chunks are - and the header that tells.
 void BagWriter::WriteIndex() {
-  if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) Fail();
+  Truncate();
   std::set<std::uint32_t> connections;
   for (const Chunk& chunk : chunks_) {
     for (const auto& count : chunk.counts) connections.insert(count.first);
@@ -275,12 +282,14 @@ void BagWriter::Close() {
     return true;
   };
   works([this] { WriteChunk(); });
-  // On a full disk the index takes the place of what did not fit; of whole chunks, the last first, if need be.
+  // On a full disk the index takes the place of what did not fit; of whole chunks, the last first, if need be, but
+  // not of those that the run can be resumed behind.
   bool indexed = false;
-  while (!(indexed = works([this] { WriteIndex(); })) && !chunks_.empty()) {
+  while (!(indexed = works([this] { WriteIndex(); })) && chunks_.size() > kept_chunks_) {
     size_ = chunks_.back().position;
     chunks_.pop_back();
   }
+  if (!indexed) works([this] { Truncate(); });
   const bool complete = close(descriptor_) == 0 && indexed;
   descriptor_ = -1;
   if (complete) std::filesystem::rename(file_ + ".active", file_);

@@ -90,7 +90,11 @@ void WriteFile(const fs::path& file, const std::string& text) {
   std::ofstream stream(unfinished, std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw std::runtime_error("cannot write " + file.string());
+  if (!stream) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw std::runtime_error("cannot write " + file.string());
+  }
   fs::rename(unfinished, file);
 }
 

@@ -172,6 +172,25 @@ TEST_F(BagWriterTest, LastChunkMakesRoomForTheIndex) {
   EXPECT_GT(readable, 0u);
 }
 
+TEST_F(BagWriterTest, WhatACheckpointIsOfMakesRoomForNothing) {
+  constexpr unsigned kMessages = 500;
+  std::size_t size = 0;
+  train_dynamics::Bytes checkpoint;
+  {
+    BagWriter bag(File("run.bag"));
+    const int topic = bag.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures");
+    for (unsigned i = 0; i < kMessages; ++i) bag.Write(topic, TimeOf(i), Pressures(i));
+    checkpoint = bag.Checkpoint();
+    size = fs::file_size(File("run.bag.active"));
+    const SmallDisk disk(size + 1);
+    EXPECT_THROW(bag.Close(), std::system_error);
+  }
+  EXPECT_FALSE(fs::exists(File("run.bag")));
+  EXPECT_EQ(size, fs::file_size(File("run.bag.active")));
+  BagWriter(File("run.bag"), checkpoint).Close();  // there is room again
+  EXPECT_EQ(kMessages, Readable(File("run.bag")));
+}
+
 TEST_F(BagWriterTest, NoRoomForAnyMessage) {
   {
     const SmallDisk disk(5000);

@@ -52,7 +52,8 @@ class BagWriter {
   /// Writes what has come so far. @return what a writer needs to go on behind it
   train_dynamics::Bytes Checkpoint();
 
-  /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit.
+  /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit; if not even those of
+  /// the last checkpoint do beside the index, it stays FILE.active without one.
   /// @throws std::system_error if it lacks anything
   void Close();
 
@@ -76,6 +77,7 @@ class BagWriter {
                     const std::string& definition, bool latched);
   std::uint8_t* BeginMessage(int topic, ros::Time time, std::uint32_t size);
   void WriteChunk();
+  void Truncate();
   void WriteIndex();
   void WriteFileHeader(std::uint64_t index_position, std::size_t connections);
   void Write(const Bytes& bytes, std::uint64_t position);
@@ -85,7 +87,8 @@ class BagWriter {
   int descriptor_;
   std::uint64_t size_;  ///< of the file, up to its last whole chunk
   std::vector<Connection> connections_;
-  std::vector<Chunk> chunks_;  ///< in the file
+  std::vector<Chunk> chunks_;    ///< in the file
+  std::size_t kept_chunks_ = 0;  ///< of these, that a checkpoint is of
   Chunk open_;
   Bytes chunk_;  ///< records of the open one
 };
