@@ -29,7 +29,7 @@ from launches import SHORT_TRAIN, Launch, RosMaster, is_beginning, messages, tra
 DURATION = 2.0  # [s] of the train, and of wall time: long enough to be met on its way, with a snapshot after the first half
 EXCHANGES = 1000
 PACED = "real_time_factor:=1"
-A_QUARTER, THE_END = r" 0\.50 of 2 s", r" 2\.00 of 2 s"  # the master's progress
+A_QUARTER, THREE_QUARTERS, THE_END = r" 0\.50 of 2 s", r" 1\.50 of 2 s", r" 2\.00 of 2 s"  # the master's progress
 SOON = 20.0  # [s] for what takes no time at all, on a busy machine
 RANK = r"/train/wagon_004 \(vehicles 4-6\)"
 
@@ -88,6 +88,10 @@ class Matrix(unittest.TestCase):
           </node></group></launch>""")
         return Launch(self.master, self.folder, (str(file),))
 
+    def resume(self):
+        """train.launch goes on with what an earlier launch has left."""
+        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"resume:={self.folder}/out", "vehicles:=6", "nodes:=3")
+
     @staticmethod
     def wagon(name):
         return f'<node pkg="wagon_node" type="wagon_node" name="{name}" output="screen"/>'
@@ -145,6 +149,15 @@ class Matrix(unittest.TestCase):
         self.assertFalse(summary["complete"])
         self.assertIn(fault, summary["fault"] or "")
         return self.assert_beginning(launch.bag())
+
+    def read_bag(self, launch):
+        """What is in the bag of a run that has ended early, after repair if need be."""
+        unfinished = launch.out / "train.bag.active"
+        if not unfinished.exists():
+            return launch.bag()
+        copy = shutil.copy(unfinished, self.folder / "copy.bag")
+        subprocess.run(["rosbag", "reindex", "-q", str(copy)], check=True, stdout=subprocess.DEVNULL)
+        return messages(copy)
 
     def assert_beginning(self, bag):
         self.assertTrue(is_beginning(bag, undisturbed(self.settings)[1]), "the bag is not the beginning of the undisturbed one")
@@ -226,10 +239,12 @@ class Short(Matrix):
         self.assertGreater(self.assert_stopped(launch, 130), 50)  # 0.5 s
 
 
+LARGE_RECORDS = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # several chunks of a bag
+
+
 @unittest.skipUnless(os.geteuid() == 0, "only root can make a small disk")
 class FullDisk(Matrix):
-    # Two chunks of a bag, and some more.
-    settings = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"
+    settings = LARGE_RECORDS
 
     def setUp(self):
         super().setUp()
@@ -237,10 +252,11 @@ class FullDisk(Matrix):
         self.disk.mkdir()
         subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "train_brake_test", str(self.disk)], check=True)
         self.addCleanup(subprocess.run, ["umount", "--lazy", str(self.disk)], check=True)
+        self.filler = self.disk / "filler"
 
     def fill(self):
         """@return when"""
-        with contextlib.suppress(OSError), open(self.disk / "filler", "wb", buffering=0) as filler:
+        with open(self.filler, "wb", buffering=0) as filler:
             for size in (1 << 20, 1 << 12):
                 with contextlib.suppress(OSError):
                     while True:
@@ -248,38 +264,59 @@ class FullDisk(Matrix):
         return time.monotonic()
 
     def assert_ended(self, launch):
+        """@return records in its bag"""
         self.assertEqual(1, launch.ended(), launch.log())
         self.assert_nothing_left(launch)
         summary = launch.out / "summary.json"
         if summary.exists():
             json.loads(summary.read_text())  # whole, then
+        return self.assert_beginning(self.read_bag(launch))
 
     @cell("disk full", "start-up")
     def test_at_start_up(self):
         filled = self.fill()
         launch = self.launch(PACED)
         self.named(launch, "cannot write .*/out/config.yaml", filled, "stopped, exit code 1")
-        self.assert_ended(launch)
-        self.assertFalse((launch.out / "train.bag").exists())
+        self.assertEqual(1, launch.ended(), launch.log())
+        self.assertEqual([self.filler], list(launch.out.iterdir()))
 
     @cell("disk full", "mid-run")
     def test_in_mid_run(self):
-        launch = self.launch(PACED)
-        launch.saw(r" 1\.50 of 2 s", SOON)
+        launch = self.launch(PACED, "checkpoint_interval:=0.2")
+        launch.saw(THREE_QUARTERS, SOON)
+        filled = self.fill()
+        self.named(launch, "results could not be written: cannot write .*/out/", filled,
+                   "stopped, exit code 1; with room again, resumed to the same bits")
+        self.assertGreater(self.assert_ended(launch), 100)
+        self.filler.unlink()
+        self.assert_same(self.resume())
+
+    @cell("disk full", "mid-run, without checkpoints")
+    def test_without_checkpoints(self):
+        launch = self.launch(PACED, "checkpoint_interval:=0")
+        launch.saw(THREE_QUARTERS, SOON)
         filled = self.fill()
         self.named(launch, "results could not be written: cannot write .*/out/train.bag: No space left on device", filled,
-                   "stopped at the next chunk, exit code 1; the bag holds the whole chunks")
-        self.assert_ended(launch)
-        self.assertGreater(self.assert_beginning(launch.bag()), 10)
+                   "stopped at the next chunk of the bag, exit code 1; the bag holds the whole ones")
+        self.assertGreater(self.assert_ended(launch), 10)
+        self.assertTrue((launch.out / "train.bag").exists())
+
+    @cell("disk full", "mid-run, on_write_error:=go_on")
+    def test_go_on(self):
+        launch = self.launch(PACED, "checkpoint_interval:=0.2", "on_write_error:=go_on")
+        launch.saw(THREE_QUARTERS, SOON)
+        filled = self.fill()
+        self.named(launch, "cannot write .*/out/.*: the run goes on without records", filled, "goes on to its end, exit code 1; same digest")
+        self.assertGreater(self.assert_ended(launch), 100)
+        self.assertIn(undisturbed(self.settings)[0]["state_digest"], launch.log())
 
     @cell("disk full", "shut-down")
     def test_at_shut_down(self):
-        launch = self.launch(PACED)
-        launch.saw(r" 2\.00 of 2 s", SOON)
+        launch = self.launch(PACED, "checkpoint_interval:=0")
+        launch.saw(THE_END, SOON)
         filled = self.fill()
         self.named(launch, "results could not be written: cannot write .*/out/", filled, "stopped, exit code 1; the bag holds the whole chunks")
-        self.assert_ended(launch)
-        self.assertGreater(self.assert_beginning(launch.bag()), 10)
+        self.assertGreater(self.assert_ended(launch), 10)
 
 
 class Full(Matrix):
@@ -561,39 +598,32 @@ class Full(Matrix):
 class Resumed(Matrix):
     """Runs whose master has ended, in whatever way, and that go on from their last checkpoint with other nodes."""
 
-    settings = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # more than one chunk of a bag
+    settings = LARGE_RECORDS
 
     def launch_checkpointed(self):
         return self.launch(PACED, "checkpoint_interval:=0.2")
 
-    def resume(self):
-        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"resume:={self.folder}/out", "vehicles:=6", "nodes:=3")
-
     def assert_killed(self, launch):
-        """... and has left a bag that can be repaired. @return records in it"""
         self.assertIsNone(launch.ended())
         self.assert_nothing_left(launch)
-        self.assertFalse((launch.out / "summary.json").exists())
-        copy = shutil.copy(launch.out / "train.bag.active", self.folder / "copy.bag")
-        subprocess.run(["rosbag", "reindex", "-q", str(copy)], check=True, stdout=subprocess.DEVNULL)
-        return self.assert_beginning(messages(copy))
 
     @cell("kill -9 of the master", "start-up")
     def test_kill_at_start_up(self):
         launch = self.launch_checkpointed()
         killed = self.signal(signal.SIGKILL, "master")
         self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; nothing to resume yet")
-        self.assertIsNone(launch.ended())
-        self.assert_nothing_left(launch)
+        self.assert_killed(launch)
         self.assertEqual(2, self.resume().ended())
 
     @cell("kill -9 of the master", "mid-run")
     def test_kill(self):
         launch = self.launch_checkpointed()
-        launch.saw(r" 1\.50 of 2 s", SOON)
+        launch.saw(THREE_QUARTERS, SOON)
         killed = self.signal(signal.SIGKILL, "master")
         self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; resumed to the same bits")
-        self.assertGreater(self.assert_killed(launch), 100)
+        self.assert_killed(launch)
+        self.assertFalse((launch.out / "summary.json").exists())
+        self.assertGreater(self.assert_beginning(self.read_bag(launch)), 100)
         self.assert_same(self.resume())
 
     @cell("kill -9 of the master", "shut-down")
@@ -602,8 +632,7 @@ class Resumed(Matrix):
         launch.saw(THE_END, SOON)
         killed = self.signal(signal.SIGKILL, "master")
         self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; results complete, or resumed to the same bits")
-        self.assertIsNone(launch.ended())
-        self.assert_nothing_left(launch)
+        self.assert_killed(launch)
         again = self.resume()
         if again.ended() == 2:
             self.assertIn("nothing is left to do", again.log())
@@ -613,7 +642,7 @@ class Resumed(Matrix):
     @cell("Ctrl-C", "mid-run, resumed")
     def test_ctrl_c(self):
         launch = self.launch_checkpointed()
-        launch.saw(r" 1\.50 of 2 s", SOON)
+        launch.saw(THREE_QUARTERS, SOON)
         launch.interrupt()
         self.assertGreater(self.assert_stopped(launch, 130), 100)
         interrupted_s = launch.summary()["simulated_s"]
