@@ -98,11 +98,7 @@ void ViewNode::Begin(const train_dynamics::ScenarioParams& scenario) {
   board_ = std::make_unique<Board>(scenario_, options_);
   elevation_ = std::make_unique<Elevation>(scenario_.track);
   writer_.Refresh();
-  state_ = nullptr;
-  forces_ = nullptr;
-  pressures_ = nullptr;
   wagons_.clear();
-
   const std::vector<int> detailed = scenario_.DetailedVehicles();
   wagon_subscribers_.clear();
   for (const int i : detailed) {
@@ -113,6 +109,9 @@ void ViewNode::Begin(const train_dynamics::ScenarioParams& scenario) {
 
   if (board_->vehicles() != vehicles_before) {
     const int wanted = train_dynamics::VehicleIndex(first_vehicle_, board_->vehicles());
+    if (first_vehicle_ != 0 && wanted < 0) {
+      ROS_WARN("parameter vehicle: %d is not in a train of %d vehicles", first_vehicle_, board_->vehicles());
+    }
     const std::vector<int>& locomotives = board_->locomotives();
     const auto wagon = std::find_if(detailed.begin(), detailed.end(), [&](int i) {
       return std::find(locomotives.begin(), locomotives.end(), i) == locomotives.end();
@@ -126,20 +125,13 @@ void ViewNode::Begin(const train_dynamics::ScenarioParams& scenario) {
 }
 
 void ViewNode::OnState(const train_brake_msgs::TrainStateConstPtr& message) {
-  if (board_ == nullptr) return;
-  if (message->position_m.size() != static_cast<size_t>(board_->vehicles())) {
-    ROS_WARN_THROTTLE(10.0, "%s has %zu vehicles, but the scenario has %d: not shown",
-                      train_.resolveName(source_ + "state").c_str(), message->position_m.size(),
-                      board_->vehicles());
-    return;
-  }
   if (state_ != nullptr && message->exchange < state_->exchange) {  // another run, or the bag once more
-    board_->Forget();
+    if (board_ != nullptr) board_->Forget();
     last_second_.clear();
     wagons_.clear();
     writer_.Refresh();
   }
-  state_ = message;
+  state_ = message;  // perhaps before the scenario: it waits until that has come
 }
 
 bool ViewNode::OnSelect(train_brake_msgs::SelectView::Request& request,
@@ -175,7 +167,7 @@ void ViewNode::PublishSelection() {
 
 void ViewNode::Draw() {
   const Snapshot snapshot = MakeSnapshot();
-  PublishTransforms();
+  PublishTransforms(snapshot);
   const unsigned viewers = markers_publisher_.getNumSubscribers();
   const Clock::time_point now = Clock::now();
   if (viewers > viewers_ || now >= next_refresh_) {
@@ -203,8 +195,13 @@ void ViewNode::Draw() {
 
 Snapshot ViewNode::MakeSnapshot() {
   Snapshot snapshot;
-  if (state_ == nullptr) return snapshot;
-  const size_t vehicles = state_->position_m.size();
+  if (state_ == nullptr || board_ == nullptr) return snapshot;
+  const auto vehicles = static_cast<size_t>(board_->vehicles());
+  if (state_->position_m.size() != vehicles) {
+    ROS_WARN_THROTTLE(10.0, "%s has %zu vehicles, but the scenario has %zu: not shown",
+                      train_.resolveName(source_ + "state").c_str(), state_->position_m.size(), vehicles);
+    return snapshot;
+  }
   snapshot.time_s = state_->header.stamp.toSec();
   snapshot.real_time_factor = RealTimeFactor(snapshot.time_s);
   snapshot.position_m = state_->position_m;
@@ -231,15 +228,18 @@ double ViewNode::RealTimeFactor(double simulated_s) {
   return wall.count() > 0.0 ? (simulated_s - last_second_.front().simulated_s) / wall.count() : 0.0;
 }
 
-void ViewNode::PublishTransforms() {
-  if (state_ == nullptr) return;
+void ViewNode::PublishTransforms(const Snapshot& snapshot) {
+  if (snapshot.position_m.empty()) return;
   std::vector<int> shown = board_->locomotives();
   if (std::find(shown.begin(), shown.end(), selection_.vehicle) == shown.end())
     shown.push_back(selection_.vehicle);
   std::vector<geometry_msgs::TransformStamped> transforms;
   for (const int i : shown) {
+    ros::Time& sent = transform_sent_[i];
+    if (sent == state_->header.stamp) continue;  // tf does not like to hear the same twice
+    sent = state_->header.stamp;
     constexpr double kReach = 1.0;  // [m] over which the slope is taken
-    const double position = state_->position_m[i];
+    const double position = snapshot.position_m[i];
     const double rise = (*elevation_)(position + 0.5 * kReach) - (*elevation_)(position - 0.5 * kReach);
     const double nose_down = -std::atan2(rise, kReach);
     geometry_msgs::TransformStamped transform;
@@ -252,7 +252,7 @@ void ViewNode::PublishTransforms() {
     transform.transform.rotation.w = std::cos(0.5 * nose_down);
     transforms.push_back(transform);
   }
-  transforms_.sendTransform(transforms);
+  if (!transforms.empty()) transforms_.sendTransform(transforms);
 }
 
 }  // namespace train_brake_rviz

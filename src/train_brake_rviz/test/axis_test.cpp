@@ -50,6 +50,13 @@ TEST(Axis, TicksAreRoundAndWithin) {
   }
 }
 
+TEST(Axis, HasFewTicksWhateverTheNumbersAre) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE((Axis{kNan, kNan, 0.0, 1.0}).Ticks(5).empty());
+  EXPECT_LE((Axis{1e300, 1e300 + 1.0, 0.0, 1.0}).Ticks(5).size(), 100u);
+  EXPECT_LE((Axis{1e17, 1e17 + 64.0, 0.0, 1.0}).Ticks(5).size(), 100u);  // numbers that are 16 apart
+}
+
 TEST(TickText, HasTheDecimalsThatTellTicksApart) {
   EXPECT_EQ("400", TickText(400.0, 200.0));
   EXPECT_EQ("0.2", TickText(0.2, 0.1));

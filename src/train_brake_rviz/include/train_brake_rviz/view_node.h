@@ -52,7 +52,7 @@ class ViewNode {
   void Draw();
   Snapshot MakeSnapshot();
   double RealTimeFactor(double simulated_s);
-  void PublishTransforms();
+  void PublishTransforms(const Snapshot& snapshot);
 
   ros::NodeHandle train_, own_;
   std::string source_;  ///< prefix of the topics: "live/" or ""
@@ -82,6 +82,7 @@ class ViewNode {
   ros::Publisher markers_publisher_, selection_publisher_;
   ros::ServiceServer select_service_;
   tf2_ros::TransformBroadcaster transforms_;
+  std::map<int, ros::Time> transform_sent_;  ///< [index] stamp of the last one
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   ros::WallTimer timer_;
 };

@@ -22,7 +22,8 @@ std::vector<double> Axis::Ticks(int count) const {
   const double distance = NiceCeiling(0.7 * (max - min) / count);
   const double first = std::ceil(min / distance - 1e-6), last = std::floor(max / distance + 1e-6);
   std::vector<double> ticks;
-  for (double tick = first; tick <= last; ++tick) ticks.push_back(tick * distance);
+  constexpr int kMost = 100;  // whatever the numbers are
+  for (int i = 0; i <= last - first && i < kMost; ++i) ticks.push_back((first + i) * distance);
   return ticks;
 }
 

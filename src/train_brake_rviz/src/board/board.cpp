@@ -69,7 +69,7 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
     first += group.count;
   }
   if (vertical_exaggeration_ <= 0.0) {
-    // What can come into view: no train goes further than at its first speed.
+    // What comes into view of a train that does not gain speed.
     const double way = scenario.InitialSpeed() * scenario.duration_s;
     const double front = scenario.start_position_m;
     vertical_exaggeration_ = FittingExaggeration(

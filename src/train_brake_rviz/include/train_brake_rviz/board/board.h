@@ -42,7 +42,6 @@ class Board {
 
   int vehicles() const { return consist_.vehicles(); }
   const std::vector<int>& locomotives() const { return locomotives_; }
-  double vertical_exaggeration() const { return vertical_exaggeration_; }
 
   /// @param snapshot  arrays as long as the train, or empty
   Picture Draw(const Snapshot& snapshot, const Selection& selection);
