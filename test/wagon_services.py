@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """A wagon node as any ROS user meets it: plain service calls, the topic of a vehicle, the end of the ROS master."""
+import io
 import math
 import os
 import pathlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -152,6 +154,100 @@ class WagonServices(unittest.TestCase):
         self.assertEqual(rosservice.get_service_type(NODE + "/configure"), "train_brake_msgs/Configure")
         self.assertEqual(rosservice.get_service_type(NODE + "/step"), "train_brake_msgs/Step")
 
+    def test_rosservice_steps_a_train_by_hand(self):
+        self.begin()
+        arguments = "{run_id: %d, exchange: 0, dt_s: 0.001, steps: 2, coupler_force_n: [0, 0, 0], " \
+                    "cylinder_pressure_pa: [0, 0]}" % self.run_id
+        call = subprocess.run(["rosservice", "call", NODE + "/step", arguments], stdout=subprocess.PIPE,
+                              universal_newlines=True, check=True)
+        self.assertIn("ok: True", call.stdout)
+        self.assertTrue(self.step(self.step_request(1, run_id=self.run_id)).ok)
+
+    # ---- TCPROS, byte by byte ----
+
+    def connect(self, **fields):
+        """A connection to ~step, and the header that came back."""
+        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://"):].split(":")
+        connection = socket.create_connection((host, int(port)), 10)
+        self.addCleanup(connection.close)
+        header = {"callerid": "/stranger", "service": NODE + "/step", "md5sum": Step._md5sum, "persistent": "1", **fields}
+        lines = [f"{key}={value}".encode() for key, value in header.items()]
+        connection.sendall(frame(b"".join(frame(line) for line in lines)))
+        return connection, read_frame(connection)
+
+    def serialised(self, exchange):
+        buffer = io.BytesIO()
+        self.step_request(exchange, run_id=self.run_id).serialize(buffer)
+        return buffer.getvalue()
+
+    def reply(self, connection):
+        is_served = read_exactly(connection, 1) == b"\x01"
+        payload = read_frame(connection)
+        return Step._response_class().deserialize(payload) if is_served else payload.decode()
+
+    def test_other_definitions_are_refused_by_the_header(self):
+        connection, header = self.connect(md5sum="0" * 32)
+        self.assertIn(b"error=client wants service " + NODE.encode() + b"/step to have md5sum 000", header)
+        self.assertEqual(b"", connection.recv(1))
+        _, header = self.connect(md5sum="*", probe="1")
+        self.assertIn(b"type=train_brake_msgs/Step", header)
+
+    def test_requests_may_come_in_pieces_or_at_once(self):
+        self.begin()
+        connection, _ = self.connect()
+        for byte in frame(self.serialised(0)):
+            connection.sendall(bytes([byte]))
+        self.assertTrue(self.reply(connection).ok)
+        connection.sendall(frame(self.serialised(1)) + frame(self.serialised(2)) + frame(self.serialised(2)))
+        for exchange in (1, 2, 2):
+            reply = self.reply(connection)
+            self.assertTrue(reply.ok, reply.message)
+            self.assertEqual(exchange, reply.exchange)
+
+    def test_who_does_not_persist_is_let_go(self):
+        self.begin()
+        connection, _ = self.connect(persistent="0")
+        connection.sendall(frame(self.serialised(0)))
+        self.assertTrue(self.reply(connection).ok)
+        self.assertEqual(b"", connection.recv(1))
+
+    def test_nonsense_is_answered_and_changes_nothing(self):
+        self.begin()
+        request = self.serialised(0)
+        connection, _ = self.connect()
+        huge_array = request[:31] + b"\xff\xff\xff\xff" + request[35:]  # after run_id ... snapshot
+        for nonsense in (b"", b"x", request[:-1], request + b"x", huge_array):
+            connection.sendall(frame(nonsense))
+            self.assertIsInstance(self.reply(connection), str)  # not served, and why
+        connection.sendall(frame(request))
+        self.assertTrue(self.reply(connection).ok)
+
+    def test_whoever_speaks_no_tcpros_is_cut_off(self):
+        self.begin()
+        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://"):].split(":")
+        for greeting in (b"GET / HTTP/1.1\r\n\r\n", frame(b"no header"), b"\xff" * 100):
+            with socket.create_connection((host, int(port)), 10) as connection:
+                connection.sendall(greeting)
+                self.assertEqual(b"", connection.recv(1))
+        connection, _ = self.connect()
+        connection.sendall(b"\xff\xff\xff\xff")  # a request of 4 GiB
+        self.assertEqual(b"", connection.recv(1))
+        silent, _ = self.connect()  # and stays: nobody waits for it
+        self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
+
+    def test_whoever_does_not_read_replies_holds_up_nobody_else(self):
+        self.begin()
+        connection, _ = self.connect()
+        connection.setblocking(False)
+        request = frame(self.serialised(0))
+        with self.assertRaises(BlockingIOError):
+            for _ in range(10**6):
+                connection.sendall(request)
+        self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
+        self.assertTrue(self.step(self.step_request(1, run_id=self.run_id)).ok)
+
+    # ---- the ROS master ----
+
     def test_a_node_without_a_ros_master_leaves(self):
         port = free_port()
         environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
@@ -169,6 +265,24 @@ class WagonServices(unittest.TestCase):
         finally:
             core.kill()
             core.wait()
+
+
+def frame(payload):
+    return struct.pack("<I", len(payload)) + payload
+
+
+def read_exactly(connection, size):
+    data = b""
+    while len(data) < size:
+        piece = connection.recv(size - len(data))
+        if not piece:
+            raise EOFError
+        data += piece
+    return data
+
+
+def read_frame(connection):
+    return read_exactly(connection, struct.unpack("<I", read_exactly(connection, 4))[0])
 
 
 def free_port():

@@ -30,18 +30,16 @@ WagonNode::WagonNode()
   configure.callback_queue = &queue_;
   configure_ = private_.advertiseService(configure);
 
-  ros::AdvertiseServiceOptions step;
-  step.init<train_brake_msgs::StepRequest, train_brake_msgs::StepResponse>(
-      "step", [this](train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
-        return Step(request, response);
-      });
-  step.callback_queue = &queue_;
-  step_ = private_.advertiseService(step);
+  step_ = std::make_unique<StepService>(
+      private_.resolveName("step"), [this](std::uint8_t* request, std::uint32_t size,
+                                           std::vector<std::uint8_t>& reply) { Step(request, size, reply); });
 }
 
 void WagonNode::Run() {
   while (ros::ok() && !IsLeftAlone()) ServeSlot();
-  ros::shutdown();  // ends the thread that runs the callbacks, before what they use is destroyed
+  // Their threads end before what they use is destroyed.
+  step_.reset();
+  ros::shutdown();
 }
 
 bool WagonNode::Configure(ConfigureCall& call) {
@@ -68,11 +66,12 @@ bool WagonNode::Configure(ConfigureCall& call) {
   return true;
 }
 
-bool WagonNode::Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response) {
+void WagonNode::Step(std::uint8_t* request, std::uint32_t size, std::vector<std::uint8_t>& reply) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  response = Serve(request);
+  train_brake_msgs::ReadMessage(request, size, request_);
+  const train_brake_msgs::StepResponse& response = Serve(request_);
   if (response.ok) last_contact_ = Clock::now();
-  return true;
+  train_brake_msgs::AppendMessage(response, reply);
 }
 
 const train_brake_msgs::StepResponse& WagonNode::Serve(const train_brake_msgs::StepRequest& request) {

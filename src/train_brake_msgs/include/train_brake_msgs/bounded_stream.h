@@ -3,6 +3,7 @@
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -54,6 +55,16 @@ void ReadMessage(std::uint8_t* data, std::uint32_t size, Message& message) {
   if (stream.getLength() != 0) {
     throw std::runtime_error(std::to_string(stream.getLength()) + " bytes are left of a message");
   }
+}
+
+/// Appends a message, as it is on the wire.
+template <class Message>
+void AppendMessage(const Message& message, std::vector<std::uint8_t>& bytes) {
+  const std::size_t begin = bytes.size();
+  const std::uint32_t size = ros::serialization::serializationLength(message);
+  bytes.resize(begin + size);
+  ros::serialization::OStream stream(bytes.data() + begin, size);
+  stream.next(message);
 }
 
 }  // namespace train_brake_msgs

@@ -15,6 +15,7 @@
 
 #include "wagon_node/inline_callback_queue.h"
 #include "wagon_node/shared_slot.h"
+#include "wagon_node/step_service.h"
 #include "wagon_node/wagon_server.h"
 
 namespace wagon_node {
@@ -27,8 +28,8 @@ namespace wagon_node {
 ///               ~master_timeout_s   default 8: leave after so long without a master; 0: never
 ///               ~shared_memory      default true: share memory with a master on the same machine
 ///
-/// Calls of ~step come from roscpp's thread or, if the master is on the same machine, from memory that it
-/// shares: those are served by the thread that called Run().
+/// Calls of ~step come by TCP or, if the master is on the same machine, through memory that it shares: those are
+/// served by the thread that called Run().
 ///
 /// A master is there as long as the connection over which it configured this node is open, which costs
 /// nothing to watch and also holds for a master that is paused, stopped in a debugger or slow. A node that
@@ -56,7 +57,7 @@ class WagonNode {
   };
 
   bool Configure(ConfigureCall& call);
-  bool Step(train_brake_msgs::StepRequest& request, train_brake_msgs::StepResponse& response);
+  void Step(std::uint8_t* request, std::uint32_t size, std::vector<std::uint8_t>& reply);
   const train_brake_msgs::StepResponse& Serve(const train_brake_msgs::StepRequest& request);
   void UseSlot(const train_brake_msgs::ConfigureRequest& offer);
   void ServeSlot();
@@ -65,18 +66,19 @@ class WagonNode {
 
   InlineCallbackQueue queue_;
   ros::NodeHandle node_, private_;
-  std::mutex mutex_;  ///< of what both roscpp's thread, which runs the callbacks, and Run() use
+  std::mutex mutex_;  ///< of what the threads of roscpp, of ~step and of Run() use
   WagonServer server_;
   std::shared_ptr<SharedSlot> slot_;  ///< null: the master's calls of ~step come by TCP only
   std::condition_variable configured_;
-  train_brake_msgs::StepRequest request_;   ///< in the slot
+  train_brake_msgs::StepRequest request_;
   boost::weak_ptr<ros::M_string> session_;  ///< header of the connection that configured the present run
   Clock::time_point last_contact_;
   Clock::time_point next_question_;  ///< to the ROS master
   std::chrono::duration<double> timeout_;
   bool may_share_memory_;
   std::map<std::uint32_t, ros::Publisher> publishers_;  ///< by vehicle
-  ros::ServiceServer configure_, step_;
+  ros::ServiceServer configure_;
+  std::unique_ptr<StepService> step_;
 };
 
 }  // namespace wagon_node
