@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/train/byte_stream.h"
+
 namespace ltd_master {
 
-using Bytes = std::vector<std::uint8_t>;
+using train_dynamics::Bytes;
 
 /// A bag of which nothing can be told; what() says why.
 class UnreadableBag : public std::runtime_error {
