@@ -6,8 +6,7 @@ namespace wagon_node {
 
 /// A queue that is no queue: a callback is run at once, in the thread of roscpp that found it due.
 ///
-/// This saves two changes of thread per service call, half of what a call costs a small node. While a
-/// callback runs, nothing else of the node's network is served.
+/// This saves a thread that spins a queue. While a callback runs, nothing else of the node's network is served.
 class InlineCallbackQueue : public ros::CallbackQueueInterface {
  public:
   void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t owner) override;
