@@ -48,6 +48,14 @@ class ScenarioRules : public ::testing::Test {
     }
     return "";
   }
+  /// The warnings about one of the scenarios, one per line.
+  std::string WarningsOf(const std::string& name, const Settings& settings = {}) const {
+    std::string text;
+    for (const std::string& warning : LoadScenario(Scenario(name), settings).warnings) {
+      text += (text.empty() ? "" : "\n") + warning;
+    }
+    return WithoutFolder(text);
+  }
   std::string WithoutFolder(std::string text) const {
     const std::string prefix = root_.string() + "/";
     for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;)
@@ -317,47 +325,61 @@ TEST_F(ScenarioRules, PressureTablesCountFromWhereTheyAreNamed) {
 
 // ---- warnings
 
-TEST_F(ScenarioRules, WarnsOfExchangeIntervalsThatTheDraftGearsDoNotStand) {
-  // 0.25 s^2/m times 0.0384 m/s = 9.6 ms.
-  const Settings coarse = {"exchange_interval_s=0.01"};
-  EXPECT_EQ(
-      LoadScenario(Scenario("emergency"), coarse).warnings,
-      Settings{"exchange_interval_s 0.01 is above 0.0096, 0.25 s^2/m times "
-               "train.connection.draft_gear.smoothing_speed_mps 0.0384: coupler forces of the 2d train may "
-               "break down"});
-  EXPECT_TRUE(LoadScenario(Scenario("emergency"), {"exchange_interval_s=0.005"}).warnings.empty());
-  EXPECT_TRUE(
-      LoadScenario(Scenario("dip"), {"exchange_interval_s=0.01", "record_interval_s=0.01"}).warnings.empty())
+TEST_F(ScenarioRules, WarnsOfExchangeIntervalsThatTheConnectionsDoNotStand) {
+  EXPECT_EQ(WarningsOf("emergency", {"exchange_interval_s=0.01"}),
+            "--set exchange_interval_s=0.01: exchange_interval_s 0.01 is above 0.0066083, the longest that "
+            "train.connection stands at 900 kN: coupler forces may break down; take a shorter one");
+  EXPECT_EQ(WarningsOf("emergency", {"exchange_interval_s=0.005"}), "");
+  EXPECT_EQ(WarningsOf("dip", {"exchange_interval_s=0.01", "record_interval_s=0.01"}), "")
       << "one wagon has no connection";
-  EXPECT_TRUE(
-      LoadScenario(Scenario("emergency"), {"model=ltd", "exchange_interval_s=0.01"}).warnings.empty());
-  EXPECT_TRUE(LoadScenario(Scenario("emergency"),
-                           {"train.connection.draft_gear.friction=stick_spring", "exchange_interval_s=0.01"})
-                  .warnings.empty());
+  EXPECT_EQ(WarningsOf("emergency", {"model=ltd", "exchange_interval_s=0.005"}), "");
+  EXPECT_NE(WarningsOf("emergency", {"model=ltd", "exchange_interval_s=0.01"}), "");
+  // While it sticks at 1e9 N/m, a head of 127.4 t stands sqrt(m / k) = 11.3 ms.
+  const Settings sticks = {"train.connection.draft_gear.friction=stick_spring", "record_interval_s=0.02"};
+  const auto with = [&](const char* interval) {
+    Settings settings = sticks;
+    settings.emplace_back(interval);
+    return WarningsOf("emergency", settings);
+  };
+  EXPECT_EQ(with("exchange_interval_s=0.01"), "");
+  EXPECT_NE(
+      with("exchange_interval_s=0.02").find("above 0.011286, the longest that train.connection stands: "),
+      std::string::npos);
+}
+
+TEST_F(ScenarioRules, WarningsNameTheLineOfWhatIsWritten) {
+  const std::string file =
+      Put("scenarios/a.yaml", "base: emergency\ndescription: x\nexchange_interval_s: 0.01\n");
+  EXPECT_EQ(WithoutFolder(LoadScenario(file, {}).warnings.at(0))
+                .find("scenarios/a.yaml:3: exchange_interval_s 0.01"),
+            0u);
 }
 
 TEST_F(ScenarioRules, WarnsOfFrictionTooSteepForTheStep) {
   // 2 * 900 kN * 0.33 * 1 ms / (tan(22 deg) * 160113.8 kg) = 9.182 mm/s.
-  EXPECT_EQ(
-      LoadScenario(Scenario("emergency"), {"train.connection.draft_gear.smoothing_speed_mps=0.009"}).warnings,
-      Settings{"train.connection.draft_gear.smoothing_speed_mps 0.009 is below 0.0091822, the least for dt_s "
-               "0.001 at 900 kN and 1.6011e+05 kg: the friction of the draft gears may chatter"});
+  const std::string speed = "train.connection.draft_gear.smoothing_speed_mps";
+  EXPECT_EQ(WarningsOf("emergency", {speed + "=0.009"}),
+            "--set " + speed + "=0.009: " + speed +
+                " 0.009 is below 0.0091822, the least for dt_s 0.001 at 900 kN and 1.6011e+05 kg: the "
+                "friction of the "
+                "draft gears may chatter; take a smaller dt_s");
 }
 
 TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
   Put("t.csv", "time_s,vehicle_1_pa\n0,0\n1,1000\n");
   const std::string table = "pressure_table=" + (root_ / "t.csv").string();
-  EXPECT_EQ(LoadScenario(Scenario("dip"), {"model=ltd"}).warnings,
-            Settings{"the ltd model leaves out track.dips (1 entry)"});
-  EXPECT_EQ(LoadScenario(Scenario("single_wagon_stop"), {table}).warnings,
-            (Settings{"brake is not used: the pressures come from pressure_table",
-                      "commands (1 entry) are not used: the pressures come from pressure_table"}));
-  const std::string file = Put("scenarios/a.yaml",
-                               "base: single_wagon_stop\nmodel: ltd-no-inertia\ntrack:\n  base: level\n"
-                               "  friction_patches:\n  - {from_m: 1, to_m: 2, friction_coefficient: 0.1}\n"
-                               "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
-  EXPECT_EQ(LoadScenario(file, {}).warnings,
-            Settings{"the ltd-no-inertia model leaves out track.friction_patches (2 entries)"});
+  EXPECT_EQ(WarningsOf("dip", {"model=ltd"}),
+            "tracks/dip.yaml:4: the ltd model leaves out track.dips (1 entry)");
+  EXPECT_EQ(WarningsOf("single_wagon_stop", {table}),
+            "scenarios/single_wagon_stop.yaml:7: brake is not used: the pressures come from pressure_table\n"
+            "scenarios/single_wagon_stop.yaml:9: commands (1 entry) are not used: the pressures come from "
+            "pressure_table");
+  Put("scenarios/a.yaml",
+      "base: single_wagon_stop\nmodel: ltd-no-inertia\ntrack:\n  base: level\n"
+      "  friction_patches:\n  - {from_m: 1, to_m: 2, friction_coefficient: 0.1}\n"
+      "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(WarningsOf("a"),
+            "scenarios/a.yaml:6: the ltd-no-inertia model leaves out track.friction_patches (2 entries)");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "train_dynamics/config/load_scenario.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <exception>
@@ -99,10 +100,10 @@ std::string RoundedDown(double value) {
   return std::string(text, end.ptr);
 }
 
-void JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
-  if (scenario.model != VehicleModel::kTwoD) return;
-  double largest_step_s = std::numeric_limits<double>::infinity();
-  std::string stiffest;
+/// The largest stable step of each kind of vehicle, none in an LTD model.
+std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
+  std::vector<std::pair<std::string, double>> stable_steps;
+  if (scenario.model != VehicleModel::kTwoD) return stable_steps;
   std::set<std::string> judged;
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
     const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
@@ -110,14 +111,17 @@ void JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
     const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";
     const std::optional<Wagon> wagon = BuildWagon(vehicle, path + ".", rules);
     if (!wagon) continue;
-    const double step_s = AnalyseModes(*wagon).largest_stable_step_s;
-    if (step_s >= largest_step_s) continue;
-    largest_step_s = step_s;
-    stiffest = vehicle.name.empty() ? path : "vehicle " + vehicle.name;
+    stable_steps.emplace_back(vehicle.name.empty() ? path : vehicle.name,
+                              AnalyseModes(*wagon).largest_stable_step_s);
   }
-  rules.Check(scenario.dt_s <= largest_step_s, "dt_s",
-              "must be at most " + RoundedDown(largest_step_s) + ", the largest stable step of " + stiffest +
-                  " (train_sim modes)");
+  const auto stiffest = std::min_element(stable_steps.begin(), stable_steps.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (stiffest != stable_steps.end()) {
+    rules.Check(scenario.dt_s <= stiffest->second, "dt_s",
+                "must be at most " + RoundedDown(stiffest->second) + ", the largest stable step of vehicle " +
+                    stiffest->first + " (train_sim modes)");
+  }
+  return stable_steps;
 }
 
 }  // namespace
@@ -126,9 +130,14 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
   std::optional<Consist> consist;
   PressureSource pressures;
   std::vector<std::filesystem::path> files;
+  std::vector<std::string> warnings;
+  std::vector<std::pair<std::string, double>> stable_steps;
   const auto judge = [&](ScenarioParams& params, Reader& rules) {
     files = rules.Files();
-    JudgeWagons(params, rules);
+    stable_steps = JudgeWagons(params, rules);
+    for (const Warning& warning : Warnings(params)) {
+      warnings.push_back(rules.PlaceOf(warning.key) + ": " + warning.text);
+    }
     consist.emplace(params.train);
     if (!params.pressure_table.empty()) {
       params.pressure_table = (rules.FolderOf("pressure_table") / params.pressure_table).lexically_normal();
@@ -147,9 +156,8 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
     pressures = ReadPressureTable(params.pressure_table, consist->vehicles());
     files.emplace_back(params.pressure_table);
   }
-  std::vector<std::string> warnings = Warnings(params);
-  return {std::move(params), std::move(*consist), std::move(pressures), std::move(warnings),
-          std::move(files)};
+  return {std::move(params),   std::move(*consist), std::move(pressures),
+          std::move(warnings), std::move(files),    std::move(stable_steps)};
 }
 
 LoadedScenario LoadScenarioText(const std::string& text, const std::string& label) {

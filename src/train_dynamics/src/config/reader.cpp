@@ -159,6 +159,12 @@ std::filesystem::path Reader::FolderOf(const std::string& key) {
   return spot.value ? spot.source.document->folder : std::filesystem::path();
 }
 
+std::string Reader::PlaceOf(const std::string& path) const {
+  const Source source = session_.Locate(Path(path).text).source;
+  const bool has_line = source.document->has_lines && source.line > 0;
+  return source.document->label + (has_line ? ":" + std::to_string(source.line) : "");
+}
+
 void Reader::BeginKey(const std::string& key) {
   if (session_.errors.reports() != errors_before_key_) wrong_.push_back(key_);
   key_ = key;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "train_dynamics/train/exchange_stability.h"
+
 namespace train_dynamics {
 namespace {
 
@@ -32,27 +34,31 @@ std::string VehicleRule(int vehicles) {
          " vehicles";
 }
 
-void WarnOfGear(const ScenarioParams& scenario, const std::string& key, const ConnectionParams& connection,
-                double lightest_kg, std::vector<std::string>& warnings) {
+/// Warns of a connection that the exchange interval or the step is too long for.
+void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
+                      const ConnectionParams& connection, double lightest_kg,
+                      std::vector<Warning>& warnings) {
   const DraftGearParams& gear = connection.draft_gear;
-  if (connection.kind != ConnectionKind::kDraftGears || gear.friction != DraftGearFriction::kSmooth) return;
-  const std::string speed_key = key + ".draft_gear.smoothing_speed_mps";
-  constexpr double kLongestPerSpeed = 0.25;  // [s^2/m], found with the 2D train
-  const double longest_s = kLongestPerSpeed * gear.smoothing_speed_mps;
+  const bool is_smooth =
+      connection.kind == ConnectionKind::kDraftGears && gear.friction == DraftGearFriction::kSmooth;
+  const double longest_s = LongestStableExchange(connection, LightestCouplerHead(scenario));
   // A multiple of dt_s may exceed the limit by no more than a rounding error.
-  if (scenario.model == VehicleModel::kTwoD && scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
-    warnings.push_back("exchange_interval_s " + Short(scenario.exchange_interval_s) + " is above " +
-                       Short(longest_s) + ", 0.25 s^2/m times " + speed_key + " " +
-                       Short(gear.smoothing_speed_mps) + ": coupler forces of the 2d train may break down");
+  if (scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
+    warnings.push_back({"exchange_interval_s", "exchange_interval_s " + Short(scenario.exchange_interval_s) +
+                                                   " is above " + Short(longest_s) + ", the longest that " +
+                                                   key + " stands" + (is_smooth ? " at 900 kN" : "") +
+                                                   ": coupler forces may break down; take a shorter one"});
   }
-  constexpr double kLargeForce = 900e3;  // [N]
-  const double lowest_mps =
-      2.0 * kLargeForce * gear.static_friction_coefficient * scenario.dt_s / (gear.TanWedge() * lightest_kg);
-  if (gear.smoothing_speed_mps < lowest_mps) {
-    warnings.push_back(speed_key + " " + Short(gear.smoothing_speed_mps) + " is below " + Short(lowest_mps) +
-                       ", the least for dt_s " + Short(scenario.dt_s) + " at 900 kN and " +
-                       Short(lightest_kg) + " kg: the friction of the draft gears may chatter");
-  }
+  if (!is_smooth) return;
+  const std::string speed_key = key + ".draft_gear.smoothing_speed_mps";
+  const double lowest_mps = 2.0 * kLargeCouplerForce * gear.static_friction_coefficient * scenario.dt_s /
+                            (gear.TanWedge() * lightest_kg);
+  if (gear.smoothing_speed_mps >= lowest_mps) return;
+  warnings.push_back(
+      {speed_key, speed_key + " " + Short(gear.smoothing_speed_mps) + " is below " + Short(lowest_mps) +
+                      ", the least for dt_s " + Short(scenario.dt_s) + " at 900 kN and " +
+                      Short(lightest_kg) +
+                      " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
 }  // namespace
@@ -176,8 +182,8 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   }
 }
 
-std::vector<std::string> Warnings(const ScenarioParams& scenario) {
-  std::vector<std::string> warnings;
+std::vector<Warning> Warnings(const ScenarioParams& scenario) {
+  std::vector<Warning> warnings;
   const TrainParams& train = scenario.train;
   double lightest_kg = std::numeric_limits<double>::infinity();
   long units = 0;
@@ -185,25 +191,27 @@ std::vector<std::string> Warnings(const ScenarioParams& scenario) {
     lightest_kg = std::min(lightest_kg, group.vehicle.TotalMass());
     units += group.count / group.vehicles_per_unit;
   }
-  if (units > 1) WarnOfGear(scenario, "train.connection", train.connection, lightest_kg, warnings);
+  if (units > 1) WarnOfConnection(scenario, "train.connection", train.connection, lightest_kg, warnings);
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const ConsistGroupParams& group = train.consist[i];
     if (group.vehicles_per_unit == 1) continue;
-    WarnOfGear(scenario, "train.consist" + Index(i) + ".unit_connection", group.unit_connection, lightest_kg,
-               warnings);
+    WarnOfConnection(scenario, "train.consist" + Index(i) + ".unit_connection", group.unit_connection,
+                     lightest_kg, warnings);
   }
   if (scenario.model != VehicleModel::kTwoD) {
-    const std::string model = std::string("the ") + ModelName(scenario.model) + " model leaves out ";
-    const TrackParams& track = scenario.track;
-    if (!track.dips.empty()) warnings.push_back(model + "track.dips (" + Counted(track.dips.size()) + ")");
-    if (!track.friction_patches.empty())
-      warnings.push_back(model + "track.friction_patches (" + Counted(track.friction_patches.size()) + ")");
+    const auto leaves_out = [&](const std::string& key, std::size_t entries) {
+      if (entries == 0) return;
+      warnings.push_back({key, std::string("the ") + ModelName(scenario.model) + " model leaves out " + key +
+                                   " (" + Counted(entries) + ")"});
+    };
+    leaves_out("track.dips", scenario.track.dips.size());
+    leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";
-    if (scenario.brake) warnings.push_back("brake is" + unused);
+    if (scenario.brake) warnings.push_back({"brake", "brake is" + unused});
     if (!scenario.commands.empty())
-      warnings.push_back("commands (" + Counted(scenario.commands.size()) + ") are" + unused);
+      warnings.push_back({"commands", "commands (" + Counted(scenario.commands.size()) + ") are" + unused});
   }
   return warnings;
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "train_dynamics/train/scenario.h"
@@ -14,8 +15,10 @@ struct LoadedScenario {
   ScenarioParams params;
   Consist consist;
   PressureSource pressures;
-  std::vector<std::string> warnings;           ///< see Warnings()
+  std::vector<std::string> warnings;           ///< see Warnings(); "file:line: sentence"
   std::vector<std::filesystem::path> files{};  ///< all that were read
+  /// Largest stable dt_s of each kind of vehicle, by its name [s]; 2D model only.
+  std::vector<std::pair<std::string, double>> stable_steps{};
 };
 
 /// Reads a scenario with all of its parts, and its pressure table if it names one.

@@ -76,6 +76,9 @@ class Reader {
   /// written, or the working directory for an override. Empty if the key was not given.
   std::filesystem::path FolderOf(const std::string& key);
 
+  /// "file:line" of the value at a path of the configuration, or of the map that it is missing in.
+  std::string PlaceOf(const std::string& path) const;
+
   /// All files of the configuration that were read so far.
   std::vector<std::filesystem::path> Files() const { return session_.library.Files(); }
 

@@ -105,19 +105,21 @@ struct ScenarioParams {
   void JudgeDips(std::vector<BrokenRule>& broken) const;
 };
 
-/// What is allowed but most likely not meant, or beyond what was shown to work; one sentence each, with
-/// numbers.
+/// Something that is allowed but most likely not meant, or beyond what was shown to work.
+struct Warning {
+  std::string key;   ///< its path in the configuration
+  std::string text;  ///< a sentence with numbers and remedy
+};
+
+/// The warnings about a scenario that keeps its rules.
 ///
-/// Connections with smooth draft gears of smoothing speed v_e, H the exchange interval:
+/// An exchange interval H that one of the connections does not stand: see LongestStableExchange. A smoothing speed v_e
+/// of draft gears too steep for the step:
 ///
-///   H > 0.25 s^2/m v_e                    the coupler forces of the 2D train break down
-///   v_e < 2 F_s mu_s dt / (tan(phi) m)    too steep for the step; F_s = 900 kN, m of the lightest vehicle
+///   v_e < 2 F mu_s dt / (tan(phi) m)    F = 900 kN, m of the lightest vehicle
 ///
-/// the latter in every model. Besides: parts of the scenario that its model, or its pressure table, leaves
-/// unused.
-///
-/// @param scenario  one that keeps its rules
-std::vector<std::string> Warnings(const ScenarioParams& scenario);
+/// Besides: parts of the scenario that its model, or its pressure table, leaves unused.
+std::vector<Warning> Warnings(const ScenarioParams& scenario);
 
 /// Index from 0 of a vehicle that is numbered from 1, or from -1 for the last; -1 if the train has no such
 /// vehicle.

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "train_dynamics/train/scenario.h"
+
+namespace train_dynamics {
+
+/// The longest exchange interval H that a connection stands [s].
+///
+/// Its force is evaluated once per interval, at the predicted middle, and held. In the motion that is hardest on that,
+/// neighbours of a long train move against each other, each coupler head of mass m between two equal connections of
+/// tangent stiffness k and damping c, four times which act on its displacement x:
+///
+///   v1 = v0 - (4 H / m) (k (x0 + H/2 v0) + c v0),   x1 = x0 + H/2 (v0 + v1)
+///
+/// whose trace is 2 - 4 k H^2 / m - 4 c H / m and whose determinant 1 - 4 c H / m. Neither mode grows while
+///
+///   k H^2 + 2 c H < m
+///
+///   draw-bar                      k and c as given
+///   draft gears, stick_spring     k while they stick
+///   draft gears, smooth friction  k = k_s / 2 of the two springs; c = F mu_s / (2 tan(phi) v_e), the slope of the
+///                                 friction where the gears stand under F = kLargeCouplerForce
+///
+/// The friction's slope falls as soon as the gears move, so what grows is bounded at first: whole trains broke down at 1
+/// to 1.8 times this interval (docs/validation.md). Left out: solid stops, different vehicles side by side.
+///
+/// @param head_mass_kg  see CouplerHeadMass
+double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg);
+
+/// The largest force that smooth draft gears are judged by [N]: that of the paper's emergency brake.
+inline constexpr double kLargeCouplerForce = 900e3;
+
+/// The mass that a coupler head sets against a quick force [kg]: the vehicle's inertia in LTD; in the 2D model that of
+/// the carbody, which yields in x and in pitch: 1 / (1/m + h^2/I), h the head's height over its centre of gravity.
+double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model);
+
+/// The lightest coupler head of a scenario's train [kg].
+double LightestCouplerHead(const ScenarioParams& scenario);
+
+}  // namespace train_dynamics

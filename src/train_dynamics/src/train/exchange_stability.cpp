@@ -1,0 +1,41 @@
+#include "train_dynamics/train/exchange_stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "train_dynamics/vehicle/wagon.h"
+
+namespace train_dynamics {
+
+double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg) {
+  double k = connection.draw_bar.stiffness_n_per_m, c = connection.draw_bar.damping_ns_per_m;
+  if (connection.kind == ConnectionKind::kDraftGears) {
+    const DraftGearParams& gear = connection.draft_gear;
+    const bool sticks = gear.friction == DraftGearFriction::kStickSpring;
+    const double friction = kLargeCouplerForce * gear.static_friction_coefficient /
+                            (2.0 * gear.TanWedge() * gear.smoothing_speed_mps);
+    k = sticks ? gear.stick_stiffness_n_per_m : 0.5 * gear.spring_stiffness_n_per_m;
+    c = sticks ? 0.0 : friction;
+  }
+  return head_mass_kg / (c + std::sqrt(c * c + k * head_mass_kg));
+}
+
+double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model) {
+  if (model == VehicleModel::kLtdNoInertia) return vehicle.TotalMass();
+  if (model == VehicleModel::kLtd)
+    return vehicle.TotalMass() + EquivalentRotationalMass(vehicle.wheelset, kWheelsets);
+  const BodyParams& carbody = vehicle.carbody;
+  const double arm_m = vehicle.coupler_height_m - carbody.cg_height_m;
+  return 1.0 / (1.0 / carbody.mass_kg + arm_m * arm_m / carbody.pitch_inertia_kgm2);
+}
+
+double LightestCouplerHead(const ScenarioParams& scenario) {
+  double lightest_kg = std::numeric_limits<double>::infinity();
+  for (const ConsistGroupParams& group : scenario.train.consist) {
+    lightest_kg = std::min(lightest_kg, CouplerHeadMass(group.vehicle, scenario.model));
+  }
+  return lightest_kg;
+}
+
+}  // namespace train_dynamics
