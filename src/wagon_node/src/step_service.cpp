@@ -19,10 +19,10 @@ namespace {
 
 using train_brake_msgs::Step;
 
-constexpr std::size_t kPrefix = 4;             // [bytes] a frame's size
-constexpr std::size_t kBuffer = 4096;          // [bytes] read at once; more than most requests have
-constexpr std::uint32_t kMaxHeader = 1 << 20;  // [bytes]
-constexpr std::uint32_t kMaxRequest = 1 << 28;
+constexpr std::size_t kPrefix = 4;              // [bytes] a frame's size
+constexpr std::size_t kBuffer = 4096;           // [bytes] read at once; more than most requests have
+constexpr std::uint32_t kMaxHeader = 1 << 20;   // [bytes]
+constexpr std::uint32_t kMaxRequest = 1 << 26;  // of four million vehicles
 constexpr int kBacklog = 100;
 constexpr int kForEver = -1;
 
