@@ -40,12 +40,15 @@ bool HasMark(const fs::path& folder) {
   return std::getline(config, line) && line == kMark;
 }
 
-/// Makes the folder; clears it of the results of an earlier run, but of nothing that a user may have put there.
-void PrepareFolder(const fs::path& folder) {
+void MakeFolder(const fs::path& folder) {
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw std::runtime_error(folder.string() + " is not a folder: results cannot go there");
   }
   fs::create_directories(folder);
+}
+
+/// Clears it of the results of an earlier run, but of nothing that a user may have put there.
+void ClearFolder(const fs::path& folder) {
   const bool ours = HasMark(folder);
   std::vector<fs::path> results;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -110,7 +113,9 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
     throw std::runtime_error(options.folder + " is the folder of " + input.string() +
                              ", of which the scenario is made: choose another for the results");
   }
-  PrepareFolder(folder_);
+  MakeFolder(folder_);
+  lock_.emplace(folder_);
+  ClearFolder(folder_);
   WriteResolvedConfig(scenario, folder_);
   if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), scenario);
   if (options.csv) csv_ = std::make_unique<CsvRecorder>(folder_);
@@ -131,8 +136,10 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   }
   train_dynamics::ByteReader checkpoint(run.checkpoint.output);
   const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
+  MakeFolder(folder_);
+  lock_.emplace(folder_);
   if (is_elsewhere) {
-    PrepareFolder(folder_);
+    ClearFolder(folder_);
     WriteResolvedConfig(run.scenario.params, folder_);
     for (const fs::directory_entry& entry : fs::directory_iterator(run.folder)) {
       const std::string name = entry.path().filename().string();

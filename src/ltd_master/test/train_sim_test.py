@@ -274,12 +274,38 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(1, done.returncode)
         self.assertIn("file", done.stderr)
 
-    def test_ctrl_c_keeps_what_was_simulated(self):
+    def start_endless(self, **options):
         process = subprocess.Popen([TRAIN_SIM, "run", EMERGENCY, "--out", str(self.out), "--set", "duration_s=1000"],
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
         deadline = time.monotonic() + 60
         while not (self.out / "train.bag.active").exists() and time.monotonic() < deadline:
             time.sleep(0.05)
+        return process
+
+    def test_two_runs_do_not_share_a_folder(self):
+        first = self.start_endless()
+        second = train_sim("run", DIP, "--out", self.out)
+        self.assertEqual(1, second.returncode)
+        self.assertIn("another run is writing into", second.stderr)
+        self.assertTrue((self.out / "train.bag.active").exists())
+        first.kill()
+        first.communicate()
+        self.run_ok(DIP, "--out", self.out)  # nothing is left of a killed run's lock
+
+    def test_the_end_of_a_terminal_is_as_ctrl_c(self):
+        for ignored in (False, True):
+            how = (lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) if ignored else None  # as nohup does
+            process = self.start_endless(preexec_fn=how)
+            process.send_signal(signal.SIGHUP)
+            if ignored:
+                time.sleep(0.5)
+                self.assertIsNone(process.poll())
+                process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+            self.assertEqual(130, process.returncode)
+
+    def test_ctrl_c_keeps_what_was_simulated(self):
+        process = self.start_endless()
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
         stdout, stderr = process.communicate(timeout=60)

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ltd_master/bag_recorder.h"
 #include "ltd_master/csv_recorder.h"
+#include "ltd_master/folder_lock.h"
 #include "ltd_master/recorder_thread.h"
 #include "ltd_master/resume.h"
 #include "train_dynamics/train/run_summary.h"
@@ -42,7 +44,8 @@ class RunOutput {
  public:
   /// Makes the folder, clears it of the results of an earlier run and writes config.yaml.
   /// @param inputs  the files of which the scenario was made
-  /// @throws std::exception if that cannot be done, or if one of the inputs lies in this very folder
+  /// @throws std::exception if that cannot be done, if one of the inputs lies in this very folder, or if another
+  ///         run is writing into it
   RunOutput(const OutputOptions& options, const std::vector<std::filesystem::path>& inputs,
             const train_dynamics::ScenarioParams& scenario);
 
@@ -74,6 +77,7 @@ class RunOutput {
 
   OutputOptions options_;
   std::filesystem::path folder_;
+  std::optional<FolderLock> lock_;
   std::string identity_;       ///< of the scenario, see IdentityOf
   long checkpoint_exchanges_;  ///< from one to the next; 0: none
   std::exception_ptr error_;   ///< the first, where the run goes on
