@@ -101,6 +101,17 @@ test-cluster: build ## a train over three machines (network namespaces with sshd
 	@tools/install_packages.sh packages_cluster.txt
 	@tools/test_cluster.sh
 
+# The same Python and ROS as in tests.
+in_workspace = . devel/setup.bash && PATH=/usr/bin:$$PATH
+.PHONY: test-faults
+test-faults: build ## every fault that a run has to survive, at every time of it; a few minutes (root: with full disks)
+	@$(in_workspace) test/faults.py --verbose
+
+ROUNDS ?= 100
+.PHONY: test-soak
+test-soak: build ## ROUNDS=100 short trains in a row: nothing may pile up
+	@$(in_workspace) test/soak.py $(ROUNDS)
+
 .PHONY: fuzz
 fuzz: deps ## hostile input for every parser, FUZZ_SECONDS=60 each (clang), in build_fuzz/
 	@tools/install_packages.sh packages_fuzz.txt
