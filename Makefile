@@ -31,7 +31,7 @@ quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Ins
 # All tests of the build folder $(1), each in $(2) seconds (600), or those named $(3); the output of failed ones, and
 # "N passed, N failed". /usr/bin comes first, because tools of ROS start "python3".
 run_tests = rm -rf $(1)/test_results $(1)/Testing; \
-  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure -R '$(3)'); \
+  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure $(if $(3),-R '$(3)')); \
   tools/test_summary.py $(1)
 
 sources = find src -name '*.h' -o -name '*.cpp'
