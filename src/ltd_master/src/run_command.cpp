@@ -131,33 +131,4 @@ int RunScenario(const RunOptions& options) {
   return Run(run.scenario, options, &run.checkpoint, output);
 }
 
-int CheckScenario(const RunOptions& options) {
-  const LoadedScenario scenario = Load(options);
-  const train_dynamics::ScenarioParams& p = scenario.params;
-  const train_dynamics::Consist& consist = scenario.consist;
-  double mass = 0.0, length = 0.0;
-  for (int i = 0; i < consist.vehicles(); ++i) {
-    mass += consist.vehicle(i).TotalMass();
-    length += consist.vehicle(i).length_m;
-  }
-  size_t draw_bars = 0;
-  for (int type : consist.connection_type) {
-    if (consist.connection_types[type].kind == train_dynamics::ConnectionKind::kDrawBar) ++draw_bars;
-  }
-  const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
-  fmt::print("{}: {}\n", p.name, p.description);
-  fmt::print("  model      {}\n", train_dynamics::ModelName(p.model));
-  fmt::print("  train      {}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars\n", p.train.name,
-             consist.vehicles(), 1e-3 * mass, length, consist.connection_type.size() - draw_bars, draw_bars);
-  fmt::print("  track      {}\n", p.track.name);
-  fmt::print("  pressures  {}\n", p.pressure_table.empty() ? fmt::format("{}, {} driver command(s)",
-                                                                         p.brake->name, p.commands.size())
-                                                           : p.pressure_table);
-  fmt::print(
-      "  run        {:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} "
-      "s\n",
-      p.duration_s, p.initial_speed_kmh, steps, p.dt_s, p.exchange_interval_s, p.record_interval_s);
-  return kSuccess;
-}
-
 }  // namespace ltd_master

@@ -6,6 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "ltd_master/check_command.h"
 #include "ltd_master/run_command.h"
 #include "ltd_master/vehicle_commands.h"
 #include "ltd_master/verify_command.h"
@@ -84,9 +85,20 @@ int Main(int argc, char** argv) {
     command = [&] { return ltd_master::RunScenario(options); };
   });
 
-  CLI::App* check = app.add_subcommand("check", "check a scenario with all its parts and print what it is");
-  AddInput(check, "SCENARIO", "scenario file", options.scenario, options.overrides);
-  check->callback([&] { command = [&] { return ltd_master::CheckScenario(options); }; });
+  ltd_master::CheckOptions planned;
+  CLI::App* check = app.add_subcommand(
+      "check", "check a scenario with all its parts, print what it is and what a run takes");
+  AddInput(check, "SCENARIO", "scenario file", planned.scenario, planned.overrides);
+  check->add_option("--model", planned.model, "vehicle model; default: the scenario's")
+      ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
+  check->add_option("--out", planned.out, "folder for results: is there room for them?");
+  check->add_option("--threads", planned.threads, "as for run")->check(CLI::Range(1, 1024));
+  check->add_option("--nodes", planned.nodes, "wagon nodes of a distributed run: do they fit?")
+      ->check(CLI::Range(1, 100000));
+  check->add_option("--machines", planned.machines, "machines like this one that share them")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  check->callback([&] { command = [&] { return ltd_master::CheckScenario(planned); }; });
 
   ltd_master::VerifyOptions recording;
   CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");

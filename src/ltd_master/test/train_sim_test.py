@@ -176,6 +176,75 @@ class TrainSimTest(unittest.TestCase):
             self.assertEqual(2, done.returncode, change)
             self.assertIn(complaint, done.stderr)
 
+    def check(self, *arguments):
+        """The lines of train_sim check as a dictionary, and its warnings."""
+        done = train_sim("check", *arguments)
+        self.assertEqual(0, done.returncode, done.stderr)
+        lines = {line[2:12].strip(): line[13:] for line in done.stdout.splitlines()[1:]}
+        self.assertEqual(done.stdout.splitlines()[1:], ["  %-10s %s" % line for line in lines.items()])  # aligned
+        return lines, done.stderr
+
+    def test_check_predicts_the_bag(self):
+        """The size of the real bag within 1 %, short runs with their descriptions of topics within 2 %."""
+        for model, duration, within in (("2d", 3, 0.01), ("ltd", 3, 0.01), ("2d", 0.2, 0.02)):
+            lines, _ = self.check(EMERGENCY, "--model", model, "--set", f"duration_s={duration}")
+            self.run_ok(EMERGENCY, "--model", model, "--set", f"duration_s={duration}", "--out", self.out)
+            size_mb = 1e-6 * (self.out / "train.bag").stat().st_size
+            # Printed to 0.1 MB.
+            self.assertAlmostEqual(size_mb, float(lines["bag"].split()[0]), delta=within * size_mb + 0.05)
+
+    def test_check_is_quiet_when_all_is_well(self):
+        lines, warnings = self.check(EMERGENCY)
+        self.assertEqual("", warnings)
+        self.assertEqual("1 ms; ore_wagon stable to 1.745 ms", lines["step"])
+        self.assertEqual("1 ms; calibrated stable to 6.61 ms at 900 kN, draw_bar stable to 23.2 ms; coupler forces within "
+                         "about 1.3 kN", lines["exchange"])
+        self.assertRegex(lines["wall time"], r"^about [\d.]+ s with \d+ thread\(s\), [\d.]+ x real time$")
+        self.assertRegex(lines["memory"], r"^about \d+ MB$")
+        lines, warnings = self.check(DIP)
+        self.assertNotIn("exchange", lines)  # a single wagon
+
+    def test_check_warns_with_place_and_remedy(self):
+        scenario = self.write("mine.yaml", f"base: {EMERGENCY}\nexchange_interval_s: 0.01\n")
+        _, warnings = self.check(scenario)
+        self.assertIn("mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest that train.connection stands",
+                      warnings)
+        self.assertIn("take a shorter one", warnings)
+        lines, warnings = self.check(EMERGENCY, "--nodes", 300, "--machines", 2)
+        self.assertIn("warning: --nodes 300: the train has 242 vehicles; take at most as many nodes", warnings)
+        self.assertRegex(warnings, r"--nodes 300: 150 nodes share \d+ cores, so that an exchange takes about [\d.]+ ms; ")
+        self.assertRegex(lines["messages"], "^121000 requests and as many replies per simulated second and machine, ")
+        lines, warnings = self.check(EMERGENCY, "--nodes", 1)
+        self.assertEqual("", warnings)
+        self.assertIn("1000 requests", lines["messages"])
+        _, warnings = self.check(EMERGENCY, "--model", "ltd", "--nodes", 2)
+        self.assertIn("--nodes 2: the ltd model runs in the master; leave it out", warnings)
+        self.assertEqual(2, train_sim("check", EMERGENCY, "--nodes", 0).returncode)
+
+    def test_check_warns_of_what_does_not_fit(self):
+        def limited(kind, limit, *arguments):
+            done = subprocess.run([TRAIN_SIM, "check", EMERGENCY, *arguments], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True,
+                                  preexec_fn=lambda: resource.setrlimit(kind, (limit, limit)))
+            self.assertEqual(0, done.returncode, done.stderr)
+            return done.stderr
+
+        self.assertIn("the master needs 740 open files, more than `ulimit -Hn`; raise that or take fewer nodes",
+                      limited(resource.RLIMIT_NOFILE, 700, "--nodes", "242"))
+        self.assertNotIn("open files", limited(resource.RLIMIT_NOFILE, 740, "--nodes", "242"))
+
+    @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
+    def test_check_warns_of_a_small_disk(self):
+        self.out.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=50m", "none", str(self.out)]).returncode != 0:
+            self.skipTest("this machine does not allow mounts")
+        try:
+            _, warnings = self.check(EMERGENCY, "--out", self.out / "below" / "run")
+            self.assertRegex(warnings, r"--out .*: the bag needs 108 MB, \d+ MB are free; take a longer record_interval_s")
+            self.assertEqual("", self.check(EMERGENCY, "--out", self.out, "--set", "duration_s=10")[1])
+        finally:
+            subprocess.run(["umount", str(self.out)], check=True)
+
     def test_bad_arguments(self):
         for arguments in ([], ["run"], ["fly", EMERGENCY], ["run", EMERGENCY, "--model", "3d"],
                           ["run", EMERGENCY, "--threads", "0"], ["run", EMERGENCY, "--csv"], ["run", EMERGENCY, "--tread"]):

@@ -39,7 +39,4 @@ int Threads(int asked, const train_dynamics::config::LoadedScenario& scenario);
 /// @throws train_dynamics::config::Error, std::exception
 int RunScenario(const RunOptions& options);
 
-/// Checks a scenario and prints what it is.
-int CheckScenario(const RunOptions& options);
-
 }  // namespace ltd_master
