@@ -4,7 +4,7 @@ import workspace
 from table import Table, number
 
 SIZES = [10, 20, 50, 100, 242, 500, 1000, 2000]
-VEHICLE_STEPS = 3e6  # of a measurement
+VEHICLE_STEPS = {"2d": 3e6, "ltd": 2e7}  # of a measurement
 LONGEST_S = 40.0     # the train is still moving then
 
 
@@ -27,11 +27,11 @@ def run():
 
 
 def _measure(model, size):
-    duration_s = round(min(LONGEST_S, 1e-3 * VEHICLE_STEPS / size), 2)
+    duration_s = round(min(LONGEST_S, 1e-3 * VEHICLE_STEPS[model] / size), 2)
     sources = ", ".join(f"{{name: every 120, vehicle: {i}, application_delay_s: 0, releases: false}}"
                         for i in range(1, size + 1, 120))
     settings = [f"train.consist=[{{vehicle: ore_wagon, count: {size}}}]", f"brake.sources=[{sources}]",
                 "detail_vehicles=[]", f"duration_s={duration_s}"]
-    runs = [workspace.train_sim("--model", model, "--threads", 1, settings=settings) for _ in range(3)]
+    runs = [workspace.train_sim("--model", model, "--threads", 1, settings=settings) for _ in range(5)]
     return (measure.median([run.summary["ns_per_vehicle_step"] for run in runs]),
             measure.median([run.peak_bytes for run in runs]))
