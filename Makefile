@@ -19,7 +19,7 @@ release  = $(catkin_make) -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMM
 sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_sanitize \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=address,undefined
 tsan     = $(catkin_make) --build build_tsan -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_tsan \
-  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=thread
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=thread -DCATKIN_BLACKLIST_PACKAGES=train_brake_rviz
 
 fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_fuzz \
   -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
@@ -82,7 +82,7 @@ test-sanitize: deps ## the same with the address and undefined-behaviour sanitiz
 	@$(call run_tests,build_sanitize,3000)
 
 # Tests in which threads share anything. The rest has one.
-threaded = threaded_block_test|recorder_thread_test|run_control_test|wagon_server_test|train_sim_test|wire.test|distributed_train.test
+threaded = threaded_block_test|recorder_thread_test|run_control_test|shared_slots?_test|wagon_server_test|train_sim_test|wire.test|distributed_train.test
 .PHONY: test-tsan
 test-tsan: export TSAN_OPTIONS = history_size=7 suppressions=$(CURDIR)/tools/thread_sanitizer.supp
 test-tsan: deps ## tests of everything with threads under the thread sanitizer, in build_tsan/

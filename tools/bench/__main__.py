@@ -25,28 +25,37 @@ def main():
     parser.add_argument("--only", default="", metavar="NAME,...",
                         help="measure these sections; the others keep their results")
     arguments = parser.parse_args()
-    chosen = [name for name in arguments.only.replace(",", " ").split()] or SECTIONS
+    chosen = arguments.only.replace(",", " ").split() or SECTIONS
     unknown = [name for name in chosen if name not in SECTIONS]
     if unknown:
         parser.error(f"{unknown[0]} is not a section; the sections are {', '.join(SECTIONS)}")
 
     RESULTS.mkdir(parents=True, exist_ok=True)
-    for name in chosen:
-        print(f"{name} ...", file=sys.stderr, flush=True)
-        begin = time.monotonic()
-        try:
-            tables, facts = importlib.import_module(name).run()
-        except measure.Failed as failure:
-            sys.exit(f"make bench: {name}: {failure}")
-        result = {"machine": machine.describe(), "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
-        (RESULTS / f"{name}.json").write_text(json.dumps(result, indent=1) + "\n")
-        print(f"{name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
+    failures = [failure for name in chosen if (failure := _measure(name))]
 
     results = _load()
     tables = {name: [Table(**t) for t in result["tables"]] for name, result in results.items()}
     summary = targets.table({name: result["facts"] for name, result in results.items()})
     print(as_text([summary, *(t for name in SECTIONS for t in tables.get(name, []))]))
     page.write(machine.describe(), summary, tables)
+    if failures:
+        sys.exit("\n".join(["", *failures]))
+
+
+def _measure(name):
+    """Measures a section and keeps its results; what went wrong, or nothing."""
+    print(f"{name} ...", file=sys.stderr, flush=True)
+    begin = time.monotonic()
+    file = RESULTS / f"{name}.json"
+    file.unlink(missing_ok=True)
+    try:
+        tables, facts = importlib.import_module(name).run()
+    except measure.Failed as failure:
+        return f"make bench: {name}: {failure}"
+    result = {"machine": machine.describe(), "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
+    file.write_text(json.dumps(result, indent=1) + "\n")
+    print(f"{name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
+    return ""
 
 
 def _load():

@@ -12,7 +12,7 @@ def run():
     cores = machine.cores()
     with tempfile.TemporaryDirectory() as folder:
         alone, ranks = measure.in_turn(
-            3,
+            2,
             lambda: workspace.train_sim_into(folder, "--threads", cores),
             lambda: workspace.Launch(cores, record=True))
     if {run.summary["state_digest"] for run in alone} != {launch.summary["state_digest"] for launch in ranks}:
