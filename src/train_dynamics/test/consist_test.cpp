@@ -87,7 +87,9 @@ TEST(InTrainForces, StartWithoutForceInEveryStateOfSlack) {
     std::vector<double> force;
     forces.Evaluate(0.0, rest, force);
     EXPECT_EQ(force, std::vector<double>(7, 0.0));
-    EXPECT_EQ(forces.extension_m(), (std::vector<double>{0.0, edge[k], 0.0, edge[k], 0.0}));
+    std::vector<double> extension;
+    forces.Extensions(extension);
+    EXPECT_EQ(extension, (std::vector<double>{0.0, edge[k], 0.0, edge[k], 0.0}));
     EXPECT_EQ(forces.Energy().potential, 0.0);
   }
 }

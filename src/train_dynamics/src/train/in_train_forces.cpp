@@ -8,68 +8,77 @@ namespace train_dynamics {
 InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s)
     : prediction_s_(prediction_s) {
   for (const ConnectionParams& type : consist.connection_types) sets_.emplace_back(type);
-  const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
   for (const int type : consist.connection_type) {
     Set& set = sets_[type];
-    places_.push_back({type, static_cast<int>(set.place.size())});
-    set.place.push_back(static_cast<int>(extension_m_.size()));
-    const bool has_slack = set.type.kind == ConnectionKind::kDraftGears;
-    extension_m_.push_back(has_slack ? side * set.type.gear.params.slack_m : 0.0);
+    set.place.push_back(static_cast<int>(places_.size()));
+    places_.push_back({type, static_cast<int>(set.place.size()) - 1});
   }
-  start_extension_m_ = extension_m_;
-  rate_mps_.assign(extension_m_.size(), 0.0);
+  const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
   for (Set& set : sets_) {
     set.Resize(PaddedToLanes(static_cast<int>(set.place.size())));
-    for (std::size_t i = 0; i < set.place.size(); ++i) {
-      set.extension_m[i] = set.stick_m[i] = extension_m_[set.place[i]];
-    }
+    const bool has_slack = set.type.kind == ConnectionKind::kDraftGears;
+    const double extension_m = has_slack ? side * set.type.gear.params.slack_m : 0.0;
+    for (std::size_t i = 0; i < set.place.size(); ++i) set.extension_m[i] = set.stick_m[i] = extension_m;
   }
 }
 
 void InTrainForces::Set::Resize(int padded) {
   for (std::vector<double>* array :
-       {&rate_mps, &extension_m, &force_n, &elastic_n, &stick_m, &stick_n, &tension_n, &tension_time_s,
-        &compression_n, &compression_time_s, &dissipated_j}) {
+       {&start_extension_m, &next_extension_m, &rate_mps, &extension_m, &force_n, &elastic_n, &stick_m,
+        &stick_n, &tension_n, &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
     array->assign(padded, 0.0);
   }
 }
 
 ConnectionArrays InTrainForces::Set::Arrays() {
-  return {rate_mps.data(),      extension_m.data(),       force_n.data(),   elastic_n.data(),
-          stick_m.data(),       stick_n.data(),           tension_n.data(), tension_time_s.data(),
-          compression_n.data(), compression_time_s.data()};
+  return {rate_mps.data(),           extension_m.data(),    force_n.data(),
+          elastic_n.data(),          stick_m.data(),        stick_n.data(),
+          tension_n.data(),          tension_time_s.data(), compression_n.data(),
+          compression_time_s.data(), dissipated_j.data()};
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
-  for (std::size_t c = 0; c < extension_m_.size(); ++c) {
-    start_extension_m_[c] = extension_m_[c] - (head_displacement_m[c] - head_displacement_m[c + 1]);
+  for (Set& set : sets_) {
+    for (std::size_t i = 0; i < set.place.size(); ++i) {
+      const int c = set.place[i];
+      set.start_extension_m[i] = set.extension_m[i] - (head_displacement_m[c] - head_displacement_m[c + 1]);
+    }
   }
 }
 
 void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velocity_mps,
                              std::vector<double>& force_n) {
-  const std::size_t n = extension_m_.size();
-  for (std::size_t c = 0; c < n; ++c) rate_mps_[c] = head_velocity_mps[c] - head_velocity_mps[c + 1];
-  force_n.resize(n + 2);
+  force_n.resize(places_.size() + 2);
   force_n.front() = force_n.back() = 0.0;
   for (Set& set : sets_) {
-    for (std::size_t i = 0; i < set.place.size(); ++i) set.rate_mps[i] = rate_mps_[set.place[i]];
+    const std::size_t count = set.place.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const int c = set.place[i];
+      set.rate_mps[i] = head_velocity_mps[c] - head_velocity_mps[c + 1];
+    }
     BestLaneKernels().connection_forces(set.type, prediction_s_, time_s,
                                         static_cast<int>(set.rate_mps.size()), set.Arrays());
-    for (std::size_t i = 0; i < set.place.size(); ++i) force_n[set.place[i] + 1] = set.force_n[i];
+    for (std::size_t i = 0; i < count; ++i) force_n[set.place[i] + 1] = set.force_n[i];
   }
 }
 
 void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m) {
-  for (std::size_t c = 0; c < extension_m_.size(); ++c) {
-    extension_m_[c] = start_extension_m_[c] + (head_displacement_m[c] - head_displacement_m[c + 1]);
-  }
   for (Set& set : sets_) {
-    for (std::size_t i = 0; i < set.place.size(); ++i) {
-      const double extension_m = extension_m_[set.place[i]];
-      set.dissipated_j[i] += (set.force_n[i] - set.elastic_n[i]) * (extension_m - set.extension_m[i]);
-      set.extension_m[i] = extension_m;
+    const std::size_t count = set.place.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const int c = set.place[i];
+      set.next_extension_m[i] =
+          set.start_extension_m[i] + (head_displacement_m[c] - head_displacement_m[c + 1]);
     }
+    BestLaneKernels().connection_work(static_cast<int>(set.rate_mps.size()), set.next_extension_m.data(),
+                                      set.Arrays());
+  }
+}
+
+void InTrainForces::Extensions(std::vector<double>& extension_m) const {
+  extension_m.resize(places_.size());
+  for (const Set& set : sets_) {
+    for (std::size_t i = 0; i < set.place.size(); ++i) extension_m[set.place[i]] = set.extension_m[i];
   }
 }
 
@@ -96,14 +105,12 @@ void InTrainForces::AddMemoryTo(Digest& digest) const {
 
 template <class Self, class Function>
 void InTrainForces::ForEachMemory(Self& self, Function& function) {
-  for (std::size_t c = 0; c < self.places_.size(); ++c) {
-    auto& set = self.sets_[self.places_[c].set];
-    const int at = self.places_[c].at;
-    function(self.start_extension_m_[c]);
-    function(self.extension_m_[c]);
-    for (auto* array : {&set.stick_m, &set.stick_n, &set.dissipated_j, &set.tension_n, &set.tension_time_s,
-                        &set.compression_n, &set.compression_time_s}) {
-      function((*array)[at]);
+  for (const Place& place : self.places_) {
+    auto& set = self.sets_[place.set];
+    for (auto* array :
+         {&set.start_extension_m, &set.extension_m, &set.stick_m, &set.stick_n, &set.dissipated_j,
+          &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
+      function((*array)[place.at]);
     }
   }
 }
@@ -118,9 +125,6 @@ void InTrainForces::SetMemory(const std::vector<double>& memory) {
   MemoryReader reader(memory);
   ForEachMemory(*this, reader);
   reader.End();
-  for (Set& set : sets_) {
-    for (std::size_t i = 0; i < set.place.size(); ++i) set.extension_m[i] = extension_m_[set.place[i]];
-  }
 }
 
 ConnectionEnergy InTrainForces::Energy() const {

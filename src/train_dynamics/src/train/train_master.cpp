@@ -2,22 +2,9 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 
-#include "train_dynamics/vehicle/lane_kernels.h"
-
 namespace train_dynamics {
-
-PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
-  const auto brake = std::make_shared<const AirBrake>(*scenario.brake, scenario.commands, consist.centre_m);
-  return [brake](double time_s, std::vector<double>& pressure_pa) {
-    const BrakePhases phases = brake->Phases();
-    pressure_pa.resize(phases.stride);  // whole packs of lanes
-    BestLaneKernels().cylinder_pressures(phases, time_s, phases.stride, pressure_pa.data());
-    pressure_pa.resize(brake->vehicles());
-  };
-}
 
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
                          PressureSource pressures)
@@ -116,6 +103,7 @@ void TrainMaster::ShowRecord() {
     moment += mass_kg_[i] * reply_.position_m[i];
   }
   pressures_(time_s(), record_pressure_pa_);
+  forces_.Extensions(extension_m_);
   const TrainRecord record{time_s(),
                            exchange_,
                            momentum / mass,
@@ -123,7 +111,7 @@ void TrainMaster::ShowRecord() {
                            reply_,
                            acceleration_mps2_,
                            request_.coupler_force_n,
-                           forces_.extension_m(),
+                           extension_m_,
                            record_pressure_pa_,
                            request_.cylinder_pressure_pa,
                            digest_,

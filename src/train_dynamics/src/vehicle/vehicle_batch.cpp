@@ -18,8 +18,8 @@ constexpr std::size_t Fields() {
   return sizeof(Struct) / kDouble;
 }
 
-LaneKernels::StepPack<Wagon> StepOf(const LaneKernels& kernels, const Wagon&) { return kernels.step_wagons; }
-LaneKernels::StepPack<LtdVehicle> StepOf(const LaneKernels& kernels, const LtdVehicle&) {
+LaneKernels::StepPacks<Wagon> StepOf(const LaneKernels& kernels, const Wagon&) { return kernels.step_wagons; }
+LaneKernels::StepPacks<LtdVehicle> StepOf(const LaneKernels& kernels, const LtdVehicle&) {
   return kernels.step_ltd;
 }
 
@@ -154,21 +154,18 @@ void VehicleBatch<Vehicle>::SetState(int i, const State& state) {
 template <class Vehicle>
 bool VehicleBatch<Vehicle>::Advance(const TrackParams& track, double dt, int steps,
                                     const VehicleArrays& arrays, bool with_output) {
-  const int lanes = kernels_.lanes;
-  bool sound = true;
-  for (int pack = 0; pack < packs_; ++pack) {
-    std::byte* state = &states_[static_cast<std::size_t>(pack) * lanes * sizeof(State)];
-    std::byte* output =
-        with_output ? &outputs_[static_cast<std::size_t>(pack) * lanes * sizeof(Output)] : nullptr;
-    const int used = std::min(lanes, size_ - pack * lanes);
-    const VehicleArrays at = Behind(arrays, pack * lanes);
-    if (used == lanes) {
-      sound &= step_(vehicle_, track, dt, steps, at, state, output);
-    } else {
-      SpareLanes spare(at, used);
-      sound &= step_(vehicle_, track, dt, steps, spare.arrays(), state, output);
-      spare.GiveBack();
-    }
+  const int lanes = kernels_.lanes, full = size_ / lanes;
+  const auto step = [&](int packs, int from, const VehicleArrays& at) {
+    std::byte* states = states_.data() + static_cast<std::size_t>(from) * lanes * sizeof(State);
+    std::byte* outputs =
+        with_output ? outputs_.data() + static_cast<std::size_t>(from) * lanes * sizeof(Output) : nullptr;
+    return step_(vehicle_, track, dt, steps, packs, at, states, outputs);
+  };
+  bool sound = step(full, 0, arrays);
+  if (full < packs_) {
+    SpareLanes spare(Behind(arrays, full * lanes), size_ - full * lanes);
+    sound &= step(1, full, spare.arrays());
+    spare.GiveBack();
   }
   return sound;
 }

@@ -138,9 +138,17 @@ struct BrakePhases {
   const double *begin_s, *begin_pa, *target_pa, *rate_per_s;
 };
 
-/// Cylinder pressure of a vehicle, or of several from it on [Pa], at a time.
+/// Of a vehicle, or of several: where its pressure tends, what is left until there, and how fast that fades.
 template <class T>
-T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
+struct CylinderGap {
+  T target_pa;
+  T gap_pa;  ///< pressure less target
+  T rate_per_s;
+};
+
+/// The gap of a vehicle, or of several from it on, at a time.
+template <class T>
+CylinderGap<T> CylinderGapAt(const BrakePhases& p, int vehicle, double time_s) {
   T begin_s = Load<T>(p.begin_s + vehicle), begin_pa = Load<T>(p.begin_pa + vehicle);
   T target_pa = Load<T>(p.target_pa + vehicle), rate_per_s = Load<T>(p.rate_per_s + vehicle);
   for (int phase = 1; phase < p.phases; ++phase) {
@@ -152,7 +160,14 @@ T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
     target_pa = Select(begun, Load<T>(p.target_pa + at), target_pa);
     rate_per_s = Select(begun, Load<T>(p.rate_per_s + at), rate_per_s);
   }
-  return target_pa + (begin_pa - target_pa) * Exp(-rate_per_s * (T(time_s) - begin_s));
+  return {target_pa, (begin_pa - target_pa) * Exp(-rate_per_s * (T(time_s) - begin_s)), rate_per_s};
+}
+
+/// Cylinder pressure of a vehicle, or of several from it on [Pa], at a time.
+template <class T>
+T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
+  const CylinderGap<T> gap = CylinderGapAt<T>(p, vehicle, time_s);
+  return gap.target_pa + gap.gap_pa;
 }
 
 /// Cylinder pressures of a train under a list of driver commands (paper Eq 2).

@@ -35,29 +35,22 @@ struct Connection {
   DraftGear gear;  ///< unused in a draw-bar
 };
 
-/// Force of a connection [N], tension positive.
-///
-/// @param q      extension relative to the unstretched length [m], tension positive
-/// @param q_rate its rate [m/s]
-/// @param stick  memory, changed in connections with stick-spring friction only
+/// Force of a draw-bar [N], tension positive, at its extension q [m] and rate [m/s].
 template <class T>
-GearForce<T> ConnectionForce(const Connection& c, T q, T q_rate, StickState<T>& stick) {
-  if (c.kind == ConnectionKind::kDrawBar) {
-    const T elastic = c.bar.stiffness_n_per_m * q;
-    return {elastic + c.bar.damping_ns_per_m * q_rate, elastic};
-  }
-  if (c.gear.params.friction == DraftGearFriction::kSmooth) return SmoothGearForce(c.gear, q, q_rate);
-  return StickSpringGearForce(c.gear, q, q_rate, stick);
+GearForce<T> DrawBarForce(const DrawBarParams& bar, T q, T q_rate) {
+  const T elastic = bar.stiffness_n_per_m * q;
+  return {elastic + bar.damping_ns_per_m * q_rate, elastic};
 }
 
 /// Connections of one type, side by side: one number each, in arrays.
 struct ConnectionArrays {
   const double* rate_mps;                      ///< of the extension
-  const double* extension_m;                   ///< at the last exchange
+  double* extension_m;                         ///< at the last exchange
   double *force_n, *elastic_n;                 ///< tension positive
   double *stick_m, *stick_n;                   ///< StickState
   double *tension_n, *tension_time_s;          ///< the largest so far, and when
   double *compression_n, *compression_time_s;  ///< the same, <= 0
+  double* dissipated_j;                        ///< so far
 };
 
 /// Where in the slack of its connections a train starts.

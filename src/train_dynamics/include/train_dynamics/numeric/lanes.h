@@ -90,11 +90,29 @@ struct LaneMask : detail::Registers<std::int64_t, N, kWidth> {
     return detail::ForEachRegister<Lanes<N, kWidth>>(choose, mask, a, b);
   }
   friend bool AnyOf(const LaneMask& mask) {
-    std::int64_t any = 0;
-    for (int lane = 0; lane < N; ++lane) any |= mask[lane];
-    return any != 0;
+    typename LaneMask::Register any = mask.reg[0];
+    for (int i = 1; i < LaneMask::kCount; ++i) any |= mask.reg[i];
+    return HasBits(any);
   }
   friend bool AllOf(const LaneMask& mask) { return !AnyOf(!mask); }
+
+ private:
+  using Register = typename LaneMask::Register;
+  /// Whether any lane's sign bit is set; in one instruction where there is one.
+  static bool HasBits(Register any) {
+#if defined(__AVX512DQ__)
+    if constexpr (kWidth == 8) return _mm512_movepi64_mask(reinterpret_cast<__m512i>(any)) != 0;
+#endif
+#if defined(__AVX__)
+    if constexpr (kWidth == 4) return _mm256_movemask_pd(reinterpret_cast<__m256d>(any)) != 0;
+#endif
+#if defined(__SSE2__)
+    if constexpr (kWidth == 2) return _mm_movemask_pd(reinterpret_cast<__m128d>(any)) != 0;
+#endif
+    std::int64_t bits = 0;
+    for (int lane = 0; lane < kWidth; ++lane) bits |= any[lane];
+    return bits != 0;
+  }
 };
 
 /// The 64-bit patterns of N numbers.

@@ -47,11 +47,11 @@ class InTrainForces {
   /// Books the work of the last forces, once the interval has brought the heads to these displacements.
   void CloseInterval(const std::vector<double>& head_displacement_m);
 
-  int connections() const { return static_cast<int>(extension_m_.size()); }
+  int connections() const { return static_cast<int>(places_.size()); }
   /// [connection], from the front
   std::vector<ForceExtremes> Extremes() const;
   /// Extension of each connection at the last exchange [m].
-  const std::vector<double>& extension_m() const { return extension_m_; }
+  void Extensions(std::vector<double>& extension_m) const;
   /// Adds the memory of stick-spring draft gears, which is part of the train's state.
   void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
@@ -70,6 +70,7 @@ class InTrainForces {
 
     Connection type;
     std::vector<int> place;  ///< [connection of the set] in the train
+    std::vector<double> start_extension_m, next_extension_m;
     std::vector<double> rate_mps, extension_m, force_n, elastic_n, stick_m, stick_n;
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
     std::vector<double> dissipated_j;
@@ -85,8 +86,7 @@ class InTrainForces {
 
   double prediction_s_;
   std::vector<Set> sets_;
-  std::vector<Place> places_;                                       ///< [connection]
-  std::vector<double> start_extension_m_, extension_m_, rate_mps_;  ///< [connection]
+  std::vector<Place> places_;  ///< [connection]
 };
 
 }  // namespace train_dynamics

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "train_dynamics/train/brake_pressures.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
@@ -11,12 +12,6 @@
 #include "train_dynamics/train/snapshot.h"
 
 namespace train_dynamics {
-
-/// Cylinder pressure of each vehicle [Pa] at a time [s].
-using PressureSource = std::function<void(double time_s, std::vector<double>& pressure_pa)>;
-
-/// The air brake of a scenario, which must have one, as a source of pressures.
-PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
 
 /// The train at the end of an exchange, as it is recorded. Forces are those of the interval that ended.
 struct TrainRecord {
@@ -85,7 +80,7 @@ class TrainMaster {
   ExchangeRequest request_;
   ExchangeReply reply_;
   std::vector<double> mass_kg_;
-  std::vector<double> record_pressure_pa_;
+  std::vector<double> record_pressure_pa_, extension_m_;
   std::vector<double> last_speed_mps_, acceleration_mps2_;
   std::vector<Observer> observers_;
 };

@@ -10,7 +10,7 @@
 
 namespace train_dynamics {
 
-/// The arrays of an exchange from the place of one vehicle on; a pack reads and writes one number per lane.
+/// The arrays of an exchange from the place of one vehicle on, one number per vehicle.
 struct VehicleArrays {
   const double* front_coupler_n;
   const double* rear_coupler_n;
@@ -19,18 +19,23 @@ struct VehicleArrays {
   double* head_velocity_mps;
 };
 
+/// Cylinder pressures by recurrence, one number per vehicle.
+struct GapArrays {
+  double *target_pa, *gap_pa, *decay;
+};
+
 /// The time step and the laws between vehicles, `lanes` of them side by side in the registers of one
 /// instruction set.
 ///
 /// State and output of a pack of vehicles lie in memory as [field][lane] of doubles, the fields in the order
 /// of the vehicle's State and Output; 64-byte aligned.
 struct LaneKernels {
-  /// Advances a pack of one type by `steps` steps of dt.
-  /// @param output  what the last step shows; may be null
+  /// Advances `packs` packs of vehicles of one type by `steps` steps of dt.
+  /// @param outputs  what the last step shows; may be null
   /// @return whether all lanes are sound
   template <class Vehicle>
-  using StepPack = bool (*)(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                            const VehicleArrays& arrays, std::byte* state, std::byte* output);
+  using StepPacks = bool (*)(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
+                             int packs, const VehicleArrays& arrays, std::byte* states, std::byte* outputs);
 
   /// What a record holds of a pack.
   template <class Vehicle>
@@ -39,15 +44,23 @@ struct LaneKernels {
 
   const char* instruction_set;
   int lanes;
-  StepPack<Wagon> step_wagons;
-  StepPack<LtdVehicle> step_ltd;
+  StepPacks<Wagon> step_wagons;
+  StepPacks<LtdVehicle> step_ltd;
   RecordPack<Wagon> record_wagons;
   RecordPack<LtdVehicle> record_ltd;
   /// Forces of `count` connections of one type, a multiple of `lanes`.
   void (*connection_forces)(const Connection& type, double prediction_s, double time_s, int count,
                             const ConnectionArrays& arrays);
+  /// Moves `count` connections, a multiple of `lanes`, to these extensions [m], and books the work of their
+  /// friction.
+  void (*connection_work)(int count, const double* extension_m, const ConnectionArrays& arrays);
   /// Pressures of `count` vehicles at a time, a multiple of `lanes`.
   void (*cylinder_pressures)(const BrakePhases& phases, double time_s, int count, double* pressure_pa);
+  /// Gaps of `count` vehicles to their targets at a time, and by what factor they close in dt.
+  void (*cylinder_gaps)(const BrakePhases& phases, double time_s, double dt_s, int count,
+                        const GapArrays& arrays);
+  /// Closes the gaps by `steps` times dt; the pressures then.
+  void (*close_cylinder_gaps)(int steps, int count, const GapArrays& arrays, double* pressure_pa);
 };
 
 /// The kernels that were built and that this machine can run, fastest first. All give the same bits.

@@ -127,19 +127,26 @@ void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleL
   s.x_m = s.x_m + (dt - drift) * v1;
 
   const T path = 0.5 * dt * (v0 + v1);  // force x path = exact change of kinetic energy
-  const T mobilised = (free - v1) / Max(T(1e-300), per_inertia * retarding);  // -1 ... 1
+  T mobilised =
+      CopySign(T(1.0), free);  // -1 ... 1: the part of the retarding forces that acts, against `free`
+  const MaskOf<T> comes_to_rest = v1 == T(0.0);
+  if (AnyOf(comes_to_rest)) {
+    mobilised = Select(comes_to_rest, free / Max(T(1e-300), per_inertia * retarding), mobilised);
+  }
+  const T mobilised_path = mobilised * path;
   if (output != nullptr) output->shoe_force_n = shoes * mobilised;
   VehicleWork<T>& work = s.work;
   work.gravity = work.gravity + gravity * path;
-  work.traction = work.traction + loads.traction_n * path;
   const auto book = [&](Dissipation element, const T& force) {
-    work.dissipated[element] = work.dissipated[element] + force * mobilised * path;
+    work.dissipated[element] = work.dissipated[element] + force * mobilised_path;
   };
   book(kBrakeShoes, shoes);
-  book(kDynamicBrake, loads.dynamic_brake_n);
   book(kRollingResistance, rolling);
-  book(kCurvingResistance, loads.curving_resistance_n);
   book(kAirDrag, drag);
+  const T zero = T(0.0);  // what few vehicles meet is booked where it is met
+  if (AnyOf(loads.traction_n != zero)) work.traction = work.traction + loads.traction_n * path;
+  if (AnyOf(loads.dynamic_brake_n != zero)) book(kDynamicBrake, loads.dynamic_brake_n);
+  if (AnyOf(loads.curving_resistance_n != zero)) book(kCurvingResistance, loads.curving_resistance_n);
 }
 
 }  // namespace train_dynamics

@@ -47,7 +47,7 @@ class VehicleBatch {
 
   Vehicle vehicle_;
   LaneKernels kernels_;
-  LaneKernels::StepPack<Vehicle> step_;
+  LaneKernels::StepPacks<Vehicle> step_;
   LaneKernels::RecordPack<Vehicle> record_;
   int size_;
   int packs_;

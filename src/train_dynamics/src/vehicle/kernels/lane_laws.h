@@ -22,22 +22,29 @@ void Step(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoad
 }
 
 template <class T, class Vehicle>
-[[gnu::flatten]] bool StepPack(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                               const VehicleArrays& arrays, std::byte* state, std::byte* output) {
+[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
+                                int packs, const VehicleArrays& arrays, std::byte* states,
+                                std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
-  auto& pack = *reinterpret_cast<State*>(state);
-  VehicleLoads<T> loads{};
-  loads.front_coupler_n = Load<T>(arrays.front_coupler_n);
-  loads.rear_coupler_n = Load<T>(arrays.rear_coupler_n);
-  loads.cylinder_pressure_pa = Load<T>(arrays.cylinder_pressure_pa);
-  for (int step = 1; step < steps; ++step) {
-    Step(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
+  MaskOf<T> sound = T(0.0) == T(0.0);
+  for (int i = 0; i < packs; ++i) {
+    const int first = i * kLanesOf<T>;
+    State& pack = reinterpret_cast<State*>(states)[i];
+    Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
+    VehicleLoads<T> loads{};
+    loads.front_coupler_n = Load<T>(arrays.front_coupler_n + first);
+    loads.rear_coupler_n = Load<T>(arrays.rear_coupler_n + first);
+    loads.cylinder_pressure_pa = Load<T>(arrays.cylinder_pressure_pa + first);
+    for (int step = 1; step < steps; ++step) {
+      Step(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
+    }
+    Step(vehicle, track, loads, dt, pack, output);
+    Store(CouplerHeadDisplacement(vehicle, pack), arrays.head_displacement_m + first);
+    Store(CouplerHeadVelocity(vehicle, pack), arrays.head_velocity_mps + first);
+    sound = sound & IsSound(pack);
   }
-  Step(vehicle, track, loads, dt, pack, reinterpret_cast<Output*>(output));
-  Store(CouplerHeadDisplacement(vehicle, pack), arrays.head_displacement_m);
-  Store(CouplerHeadVelocity(vehicle, pack), arrays.head_velocity_mps);
-  return AllOf(IsSound(pack));
+  return AllOf(sound);
 }
 
 template <class T, class Vehicle>
@@ -56,23 +63,46 @@ void RecordPack(const Vehicle& vehicle, const std::byte* state, const std::byte*
 }
 
 template <class T>
-void ConnectionForces(const Connection& type, double prediction_s, double time_s, int count,
-                      const ConnectionArrays& at) {
+[[gnu::flatten]] void ConnectionForces(const Connection& type, double prediction_s, double time_s, int count,
+                                       const ConnectionArrays& at) {
+  const auto for_each_pack = [&](const auto& law) {
+    for (int i = 0; i < count; i += kLanesOf<T>) {
+      const T rate = Load<T>(at.rate_mps + i);
+      const GearForce<T> f = law(i, Load<T>(at.extension_m + i) + prediction_s * rate, rate);
+      Store(f.force, at.force_n + i);
+      Store(f.elastic, at.elastic_n + i);
+      const auto keep_extreme = [&](MaskOf<T> beyond, double* extreme_n, double* extreme_time_s) {
+        if (!AnyOf(beyond)) return;  // most of the time
+        Store(Select(beyond, f.force, Load<T>(extreme_n + i)), extreme_n + i);
+        Store(Select(beyond, T(time_s), Load<T>(extreme_time_s + i)), extreme_time_s + i);
+      };
+      keep_extreme(f.force > Load<T>(at.tension_n + i), at.tension_n, at.tension_time_s);
+      keep_extreme(f.force < Load<T>(at.compression_n + i), at.compression_n, at.compression_time_s);
+    }
+  };
+  if (type.kind == ConnectionKind::kDrawBar) {
+    for_each_pack([&](int /*i*/, T q, T q_rate) { return DrawBarForce(type.bar, q, q_rate); });
+  } else if (type.gear.params.friction == DraftGearFriction::kSmooth) {
+    const DraftGear gear = type.gear;  // a copy that no store can change: its numbers stay in registers
+    for_each_pack([&](int /*i*/, T q, T q_rate) { return SmoothGearForce(gear, q, q_rate); });
+  } else {
+    for_each_pack([&](int i, T q, T q_rate) {
+      StickState<T> stick{Load<T>(at.stick_m + i), Load<T>(at.stick_n + i)};
+      const GearForce<T> f = StickSpringGearForce(type.gear, q, q_rate, stick);
+      Store(stick.q, at.stick_m + i);
+      Store(stick.force, at.stick_n + i);
+      return f;
+    });
+  }
+}
+
+template <class T>
+void ConnectionWork(int count, const double* extension_m, const ConnectionArrays& at) {
   for (int i = 0; i < count; i += kLanesOf<T>) {
-    const T rate = Load<T>(at.rate_mps + i);
-    const T extension = Load<T>(at.extension_m + i) + prediction_s * rate;
-    StickState<T> stick{Load<T>(at.stick_m + i), Load<T>(at.stick_n + i)};
-    const GearForce<T> f = ConnectionForce(type, extension, rate, stick);
-    Store(f.force, at.force_n + i);
-    Store(f.elastic, at.elastic_n + i);
-    Store(stick.q, at.stick_m + i);
-    Store(stick.force, at.stick_n + i);
-    const auto keep_extreme = [&](MaskOf<T> beyond, double* extreme_n, double* extreme_time_s) {
-      Store(Select(beyond, f.force, Load<T>(extreme_n + i)), extreme_n + i);
-      Store(Select(beyond, T(time_s), Load<T>(extreme_time_s + i)), extreme_time_s + i);
-    };
-    keep_extreme(f.force > Load<T>(at.tension_n + i), at.tension_n, at.tension_time_s);
-    keep_extreme(f.force < Load<T>(at.compression_n + i), at.compression_n, at.compression_time_s);
+    const T end = Load<T>(extension_m + i);
+    const T friction = Load<T>(at.force_n + i) - Load<T>(at.elastic_n + i);
+    Store(Load<T>(at.dissipated_j + i) + friction * (end - Load<T>(at.extension_m + i)), at.dissipated_j + i);
+    Store(end, at.extension_m + i);
   }
 }
 
@@ -84,10 +114,31 @@ void CylinderPressures(const BrakePhases& phases, double time_s, int count, doub
 }
 
 template <class T>
+void CylinderGaps(const BrakePhases& phases, double time_s, double dt_s, int count, const GapArrays& at) {
+  for (int i = 0; i < count; i += kLanesOf<T>) {
+    const CylinderGap<T> gap = CylinderGapAt<T>(phases, i, time_s);
+    Store(gap.target_pa, at.target_pa + i);
+    Store(gap.gap_pa, at.gap_pa + i);
+    Store(Exp(-gap.rate_per_s * dt_s), at.decay + i);
+  }
+}
+
+template <class T>
+void CloseCylinderGaps(int steps, int count, const GapArrays& at, double* pressure_pa) {
+  for (int i = 0; i < count; i += kLanesOf<T>) {
+    T gap = Load<T>(at.gap_pa + i);
+    for (int step = 0; step < steps; ++step) gap = gap * Load<T>(at.decay + i);
+    Store(gap, at.gap_pa + i);
+    Store(Load<T>(at.target_pa + i) + gap, pressure_pa + i);
+  }
+}
+
+template <class T>
 constexpr LaneKernels KernelsOver(const char* instruction_set) {
-  return {instruction_set,          kLanesOf<T>,           &StepPack<T, Wagon>,
-          &StepPack<T, LtdVehicle>, &RecordPack<T, Wagon>, &RecordPack<T, LtdVehicle>,
-          &ConnectionForces<T>,     &CylinderPressures<T>};
+  return {instruction_set,           kLanesOf<T>,           &StepPacks<T, Wagon>,
+          &StepPacks<T, LtdVehicle>, &RecordPack<T, Wagon>, &RecordPack<T, LtdVehicle>,
+          &ConnectionForces<T>,      &ConnectionWork<T>,    &CylinderPressures<T>,
+          &CylinderGaps<T>,          &CloseCylinderGaps<T>};
 }
 
 extern const LaneKernels kScalarLaneKernels;
