@@ -82,7 +82,7 @@ test-sanitize: deps ## the same with the address and undefined-behaviour sanitiz
 	@$(call run_tests,build_sanitize,3000)
 
 # Tests in which threads share anything. The rest has one.
-threaded = threaded_block_test|recorder_thread_test|run_control_test|shared_slots?_test|wagon_server_test|train_sim_test|wire.test|distributed_train.test
+threaded = threaded_block_test|recorder_thread_test|run_control_test|shared_slots?_test|wagon_server_test|train_sim_test|resume_test|wire.test|distributed_train.test|unittest_faults|unittest_soak
 .PHONY: test-tsan
 test-tsan: export TSAN_OPTIONS = history_size=7 suppressions=$(CURDIR)/tools/thread_sanitizer.supp
 test-tsan: deps ## tests of everything with threads under the thread sanitizer, in build_tsan/

@@ -169,15 +169,23 @@ WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const O
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
   const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
+  std::array<CreepLaw<T>, kWheelsets> law;
+  std::array<RollingInput<T>, kWheelsets> rolling;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int b = kWheelset1 + i;
+    law[i] =
+        FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
+    const T push = force.x[b] - rail.normal[i] * rail.slope[i];
+    rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
+                  r * retarding};
+  }
+  const std::array<RollingResult<T>, kWheelsets> rolled = StepRolling(w.rolling, law, rolling, dt);
+
   WheelsetWork<T> work;
   for (int i = 0; i < kWheelsets; ++i) {
     const int b = kWheelset1 + i;
-    const CreepLaw<T> law =
-        FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
-    const T push = force.x[b] - rail.normal[i] * rail.slope[i];
-    const RollingInput<T> in{v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
-                             r * retarding};
-    const RollingResult<T> out = StepRolling(w.rolling, law, in, dt);
+    const RollingInput<T>& in = rolling[i];
+    const RollingResult<T>& out = rolled[i];
     v1.x[b] = out.speed;
     v1.pitch[b] = out.spin;
     v1.z[b] = v0.z[b] + (dt * w.inv_mass_per_kg[b]) * (force.z[b] + rail.normal[i]);

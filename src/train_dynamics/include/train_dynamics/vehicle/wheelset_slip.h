@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "train_dynamics/contact/polach.h"
 #include "train_dynamics/numeric/scalar.h"
 
@@ -42,23 +45,43 @@ struct SlipSolution {
 /// them leave an error in F of 1e-6 N mu0 while less than half of the friction is in use, 3e-4 N mu0 up to
 /// three quarters, and at most 1.6 % of N mu0 close to full sliding below 2 m/s, always towards too much
 /// force. The force returned is (w0 - w) / h: whatever error is left in w, momentum and energy are exact.
-template <class T>
-SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
+///
+/// Several wheelsets are solved side by side: an iteration waits for the one before, but not for those of the
+/// others.
+template <class T, std::size_t kCount>
+std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T>, kCount>& law,
+                                              const std::array<T, kCount>& h,
+                                              const std::array<T, kCount>& w0) {
   constexpr double kTwoOverPi = 0.63661977236758134308;
   constexpr int kIterations = 3;
-  const T goal = Abs(w0);
-  const T small_slip_slope =
-      (kTwoOverPi * (law.adhesion_reduction + law.slip_reduction)) * law.friction_limit * law.steepness;
-  const T lowest = Max(T(0.0), goal - h * law.friction_limit);
-  T w = Max(lowest, goal / (1.0 + h * small_slip_slope));
-  for (int i = 0; i < kIterations; ++i) {
-    const CreepForce<T> creep = PolachForce(law, w);
-    w = Clamp(w + (goal - w - h * creep.force) / (1.0 + h * creep.slope), lowest, goal);
+  std::array<T, kCount> goal, lowest, w;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    goal[i] = Abs(w0[i]);
+    const T small_slip_slope = (kTwoOverPi * (law[i].adhesion_reduction + law[i].slip_reduction)) *
+                               law[i].friction_limit * law[i].steepness;
+    lowest[i] = Max(T(0.0), goal[i] - h[i] * law[i].friction_limit);
+    w[i] = Max(lowest[i], goal[i] / (1.0 + h[i] * small_slip_slope));
   }
-  return {CopySign(w, w0), CopySign((goal - w) / h, w0)};
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const CreepForce<T> creep = PolachForce(law[i], w[i]);
+      const T step = (goal[i] - w[i] - h[i] * creep.force) / (1.0 + h[i] * creep.slope);
+      w[i] = Clamp(w[i] + step, lowest[i], goal[i]);
+    }
+  }
+  std::array<SlipSolution<T>, kCount> solution;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    solution[i] = {CopySign(w[i], w0[i]), CopySign((goal[i] - w[i]) / h[i], w0[i])};
+  }
+  return solution;
 }
 
-/// One implicit step of a wheelset's slip, with set-valued braking.
+template <class T>
+SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
+  return SolveSlip<T, 1>({law}, {h}, {w0})[0];
+}
+
+/// One implicit step of the slip of wheelsets, with set-valued braking.
 ///
 /// With the slip speed w = v - r omega and the torques of step length dt:
 ///
@@ -69,31 +92,60 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
 /// what holds them, |T| <= T_max. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
 /// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
 /// the train's speed does not betray.
-template <class T>
-RollingResult<T> StepRolling(const RollingInertia& inertia, const CreepLaw<T>& law, const RollingInput<T>& in,
-                             double dt) {
+template <class T, std::size_t kCount>
+std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
+                                                 const std::array<CreepLaw<T>, kCount>& law,
+                                                 const std::array<RollingInput<T>, kCount>& in, double dt) {
   const double r = inertia.radius_m;
   const double h_locked = dt * inertia.inv_mass_per_kg;
   const double h_turning = dt * (inertia.inv_mass_per_kg + r * r * inertia.inv_inertia_per_kgm2);
 
-  // Torque that would stop the wheels within this step, the creep force aside.
-  const T stopping = in.spin * (1.0 / (dt * inertia.inv_inertia_per_kgm2)) + in.traction_torque;
-  T torque = CopySign(in.brake_torque, stopping);
-  MaskOf<T> locked = Abs(stopping) <= in.brake_torque + r * law.friction_limit;
-  T h(h_turning);
-  if (AnyOf(locked)) {  // may stop: find the torque that holds omega1 = 0 and see whether the brake has it
-    const T holding = stopping + r * SolveSlip(law, T(h_locked), in.speed).force;
-    torque = Select(locked, Clamp(holding, -in.brake_torque, in.brake_torque), torque);
-    locked = locked & (Abs(holding) <= in.brake_torque);
-    h = Select(locked, T(h_locked), h);
+  std::array<T, kCount>
+      stopping;  // torque that would stop the wheels within this step, the creep force aside
+  std::array<T, kCount> torque, h;
+  std::array<MaskOf<T>, kCount> locked;
+  bool any_locked = false;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    stopping[i] = in[i].spin * (1.0 / (dt * inertia.inv_inertia_per_kgm2)) + in[i].traction_torque;
+    torque[i] = CopySign(in[i].brake_torque, stopping[i]);
+    h[i] = T(h_turning);
+    locked[i] = Abs(stopping[i]) <= in[i].brake_torque + r * law[i].friction_limit;
+    any_locked |= AnyOf(locked[i]);
   }
-  const T turning_spin = in.spin + dt * inertia.inv_inertia_per_kgm2 * (in.traction_torque - torque);
-  const T free_spin = Select(locked, T(0.0), turning_spin);
-  const SlipSolution<T> solution = SolveSlip(law, h, in.speed - r * free_spin);
-  const T spin = free_spin + Select(locked, T(0.0), dt * inertia.inv_inertia_per_kgm2 * r * solution.force);
-  // A locked wheel's holding torque follows from the very force that acts.
-  const T held = stopping + r * solution.force;
-  return {in.speed - h_locked * solution.force, spin, solution.force, Select(locked, held, torque)};
+  if (any_locked) {  // may stop: find the torque that holds omega1 = 0 and see whether the brake has it
+    std::array<T, kCount> speed, h_if_locked;
+    for (std::size_t i = 0; i < kCount; ++i) speed[i] = in[i].speed, h_if_locked[i] = T(h_locked);
+    const std::array<SlipSolution<T>, kCount> sliding = SolveSlip(law, h_if_locked, speed);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const T most = in[i].brake_torque, holding = stopping[i] + r * sliding[i].force;
+      torque[i] = Select(locked[i], Clamp(holding, -most, most), torque[i]);
+      locked[i] = locked[i] & (Abs(holding) <= most);
+      h[i] = Select(locked[i], T(h_locked), h[i]);
+    }
+  }
+  std::array<T, kCount> free_spin, free_slip;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const T turning_spin =
+        in[i].spin + dt * inertia.inv_inertia_per_kgm2 * (in[i].traction_torque - torque[i]);
+    free_spin[i] = Select(locked[i], T(0.0), turning_spin);
+    free_slip[i] = in[i].speed - r * free_spin[i];
+  }
+  const std::array<SlipSolution<T>, kCount> solution = SolveSlip(law, h, free_slip);
+  std::array<RollingResult<T>, kCount> out;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const T force = solution[i].force;
+    const T spin = free_spin[i] + Select(locked[i], T(0.0), dt * inertia.inv_inertia_per_kgm2 * r * force);
+    // A locked wheel's holding torque follows from the very force that acts.
+    const T held = stopping[i] + r * force;
+    out[i] = {in[i].speed - h_locked * force, spin, force, Select(locked[i], held, torque[i])};
+  }
+  return out;
+}
+
+template <class T>
+RollingResult<T> StepRolling(const RollingInertia& inertia, const CreepLaw<T>& law, const RollingInput<T>& in,
+                             double dt) {
+  return StepRolling<T, 1>(inertia, {law}, {in}, dt)[0];
 }
 
 }  // namespace train_dynamics
