@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -138,7 +139,9 @@ class BagFile::Scan {
   std::map<std::string, std::size_t> topic_;  ///< by connection number
 };
 
-BagFile::BagFile(const std::string& file) : stream_(file, std::ios::binary) {
+BagFile::BagFile(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file)) throw UnreadableBag("is not a regular file");
+  stream_.open(file, std::ios::binary);
   if (!stream_) throw UnreadableBag("cannot be read");
   Scan(stream_, topics_).Run();
 }

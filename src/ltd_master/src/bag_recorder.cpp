@@ -20,17 +20,24 @@ BagRecorder::BagRecorder(const std::string& file, const train_dynamics::Scenario
   bag_.Write(scenario_topic, ros::TIME_MIN, ScenarioMessage(scenario));
 }
 
-BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint)
+BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int vehicles)
     : bag_(file, ByteReader(checkpoint).Block()) {
   ByteReader reader(checkpoint);
   reader.Block();  // the bag's
+  const auto below = [&reader](int limit, const char* what) {
+    const std::uint64_t word = reader.Word();
+    if (word >= static_cast<std::uint64_t>(limit)) {
+      throw train_dynamics::SnapshotError(std::string("is damaged: no such ") + what);
+    }
+    return static_cast<int>(word);
+  };
   for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
-    *topic = static_cast<int>(reader.Word());
+    *topic = below(bag_.topics(), "topic");
   }
   initial_j_ = reader.Number();
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
-    const auto vehicle = static_cast<int>(reader.Word());
-    wagon_topic_[vehicle] = static_cast<int>(reader.Word());
+    const int vehicle = below(vehicles, "vehicle");
+    wagon_topic_[vehicle] = below(bag_.topics(), "topic");
   }
   reader.End();
 }

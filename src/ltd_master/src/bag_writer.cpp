@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <exception>
@@ -10,6 +11,8 @@
 #include <set>
 #include <system_error>
 #include <utility>
+
+#include "ltd_master/plain_file.h"
 
 namespace ltd_master {
 namespace {
@@ -75,6 +78,14 @@ void AppendHeader(Bytes& bytes, const Fields&... fields) {
   AppendWithLength(bytes, [&] { AppendFields(bytes, fields...); });
 }
 
+/// @throws SnapshotError if a bag knows no such time
+ros::Time TimeOf(std::uint64_t nanoseconds) {
+  if (nanoseconds >> 32 >= 1000000000u) throw train_dynamics::SnapshotError("is damaged: no such time");
+  ros::Time time;
+  time.fromNSec(nanoseconds);
+  return time;
+}
+
 }  // namespace
 
 BagWriter::BagWriter(const std::string& file)
@@ -91,34 +102,46 @@ BagWriter::BagWriter(const std::string& file)
 }
 
 BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
-    : file_(file), descriptor_(open((file + ".active").c_str(), O_WRONLY | O_CLOEXEC)), size_(0) {
+    : file_(file), descriptor_(-1), size_(0) {
+  ByteReader reader(checkpoint);
+  size_ = reader.Word();
+  const std::uint64_t digest = reader.Word();
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    Connection& connection = connections_.emplace_back();
+    connection.record = reader.Block();
+    connection.described = reader.Word() != 0;
+  }
+  std::uint64_t last_position = 0;
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    Chunk& chunk = chunks_.emplace_back();
+    chunk.position = reader.Word();
+    if (chunk.position < std::max<std::uint64_t>(kFileStart, last_position) || chunk.position > size_) {
+      throw train_dynamics::SnapshotError("is damaged: no such place in the bag");
+    }
+    last_position = chunk.position;
+    chunk.begin = TimeOf(reader.Word());
+    chunk.end = TimeOf(reader.Word());
+    for (std::uint64_t counts = reader.Word(); counts > 0; --counts) {
+      const auto id = static_cast<std::uint32_t>(reader.Word());
+      chunk.counts[id] = static_cast<std::uint32_t>(reader.Word());
+      if (id >= connections_.size()) throw train_dynamics::SnapshotError("is damaged: no such topic");
+    }
+  }
+  reader.End();
+  kept_chunks_ = chunks_.size();
+
+  const std::string active = file + ".active";
+  const std::string& found = std::filesystem::exists(file) ? file : active;
+  AddToDigest(found, kFileStart, size_, digest_);
+  if (digest_.value() != digest) {
+    throw std::invalid_argument(found + " is not the bag that the checkpoint is of, or it is damaged");
+  }
+  descriptor_ = open(found.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) Fail();
   try {
-    ByteReader reader(checkpoint);
-    size_ = reader.Word();
-    for (std::uint64_t count = reader.Word(); count > 0; --count) {
-      Connection& connection = connections_.emplace_back();
-      connection.record = reader.Block();
-      connection.described = reader.Word() != 0;
-    }
-    for (std::uint64_t count = reader.Word(); count > 0; --count) {
-      Chunk& chunk = chunks_.emplace_back();
-      chunk.position = reader.Word();
-      chunk.begin.fromNSec(reader.Word());
-      chunk.end.fromNSec(reader.Word());
-      for (std::uint64_t counts = reader.Word(); counts > 0; --counts) {
-        const auto id = static_cast<std::uint32_t>(reader.Word());
-        chunk.counts[id] = static_cast<std::uint32_t>(reader.Word());
-        if (id >= connections_.size()) throw train_dynamics::SnapshotError("is damaged: no such topic");
-      }
-    }
-    reader.End();
-    if (std::filesystem::file_size(file + ".active") < size_) {
-      throw std::runtime_error(file + ".active is shorter than it was at the checkpoint");
-    }
+    if (found != active) std::filesystem::rename(found, active);
     Truncate();
     WriteFileHeader(0, 0);
-    kept_chunks_ = chunks_.size();
   } catch (...) {
     close(descriptor_);
     throw;
@@ -130,6 +153,7 @@ Bytes BagWriter::Checkpoint() {
   kept_chunks_ = chunks_.size();
   ByteWriter writer;
   writer.Add(size_);
+  writer.Add(digest_.value());
   writer.Add(std::uint64_t{connections_.size()});
   for (const Connection& connection : connections_) {
     writer.Add(connection.record);
@@ -203,6 +227,7 @@ void BagWriter::WriteChunk() {
   Write(chunk_, size_ + header.size());
   Write(index, size_ + header.size() + chunk_.size());
 
+  for (const Bytes* bytes : {&header, &chunk_, &index}) digest_.Add(bytes->data(), bytes->size());
   open_.position = size_;
   size_ += header.size() + chunk_.size() + index.size();
   chunks_.push_back(std::exchange(open_, {}));

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "ltd_master/conversions.h"
+#include "ltd_master/plain_file.h"
 
 namespace ltd_master {
 namespace {
@@ -17,6 +18,10 @@ using train_dynamics::Bytes;
 using train_dynamics::ByteWriter;
 using train_dynamics::TrainRecord;
 using train_dynamics::WagonDetail;
+
+constexpr const char* kHistory = "train_history.csv";
+constexpr const char* kPressures = "pressures.csv";
+std::string WagonTable(int vehicle, int vehicles) { return VehicleName(vehicle, vehicles) + ".csv"; }
 
 std::ofstream Open(const std::filesystem::path& file) {
   std::ofstream stream(file);
@@ -36,50 +41,63 @@ void Row(std::ofstream& stream, const Values& values) {
 }  // namespace
 
 CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
-    : folder_(folder),
-      history_(Open(folder / "train_history.csv")),
-      pressures_(Open(folder / "pressures.csv")) {
+    : folder_(folder), history_(Open(folder / kHistory)), pressures_(Open(folder / kPressures)) {
   fmt::print(
       history_,
       "time_s,mean_speed_kmh,lead_speed_kmh,tail_speed_kmh,mean_position_m,max_tension_n,max_compression_n,"
       "mean_cylinder_pressure_pa\n");
 }
 
-CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint) : folder_(folder) {
+CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint, int vehicles)
+    : folder_(folder) {
   ByteReader reader(checkpoint);
-  const auto go_on = [&](const std::string& name) {
-    const std::filesystem::path file = folder / name;
-    const std::uint64_t size = reader.Word();
-    if (!std::filesystem::exists(file) || std::filesystem::file_size(file) < size) {
-      throw std::runtime_error(file.string() + " is shorter than it was at the checkpoint");
+  const auto check = [&](const std::string& name) {
+    const std::uint64_t size = reader.Word(), value = reader.Word();
+    train_dynamics::StreamDigest& digest = digests_[name];
+    AddToDigest(folder / name, 0, size, digest);
+    if (digest.value() != value) {
+      throw std::invalid_argument((folder / name).string() +
+                                  " is not the table that the checkpoint is of, or it is damaged");
     }
-    std::filesystem::resize_file(file, size);
-    return std::ofstream(file, std::ios::app);
   };
-  history_ = go_on("train_history.csv");
-  pressures_ = go_on("pressures.csv");
+  check(kHistory);
+  check(kPressures);
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
-    const auto vehicle = static_cast<int>(reader.Word());
-    wagons_.emplace(vehicle, go_on(reader.Text() + ".csv"));
+    const std::uint64_t vehicle = reader.Word();
+    if (vehicle >= static_cast<std::uint64_t>(vehicles)) {
+      throw train_dynamics::SnapshotError("is damaged: no such vehicle");
+    }
+    check(WagonTable(static_cast<int>(vehicle), vehicles));
+    wagons_.emplace(static_cast<int>(vehicle), std::ofstream());
   }
   reader.End();
+
+  const auto go_on = [&](const std::string& name) {
+    std::filesystem::resize_file(folder / name, digests_[name].size());
+    return std::ofstream(folder / name, std::ios::app);
+  };
+  history_ = go_on(kHistory);
+  pressures_ = go_on(kPressures);
+  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles));
 }
 
 Bytes CsvRecorder::Checkpoint() {
   ByteWriter writer;
-  const auto add = [&writer](std::ofstream& stream) {
+  const auto add = [&](std::ofstream& stream, const std::string& name) {
     stream.flush();
-    writer.Add(static_cast<std::uint64_t>(stream.tellp()));
+    Check(stream, folder_ / name);
+    train_dynamics::StreamDigest& digest = digests_[name];
+    AddToDigest(folder_ / name, digest.size(), static_cast<std::uint64_t>(stream.tellp()), digest);
+    writer.Add(digest.size());
+    writer.Add(digest.value());
   };
-  add(history_);
-  add(pressures_);
+  add(history_, kHistory);
+  add(pressures_, kPressures);
   writer.Add(std::uint64_t{wagons_.size()});
   for (auto& [vehicle, stream] : wagons_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
-    writer.Add(VehicleName(vehicle, static_cast<int>(speed_mps_.size())));
-    add(stream);
+    add(stream, WagonTable(vehicle, static_cast<int>(speed_mps_.size())));
   }
-  CheckAll();
   return writer.bytes();
 }
 
@@ -124,7 +142,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
 }
 
 void CsvRecorder::OpenWagon(int vehicle, int vehicles) {
-  std::ofstream wagon = Open(folder_ / (VehicleName(vehicle, vehicles) + ".csv"));
+  std::ofstream wagon = Open(folder_ / WagonTable(vehicle, vehicles));
   fmt::print(wagon, "time_s,speed_mps");
   for (const char* quantity : {"normal_force_{}_n", "creepage_{}", "creep_force_{}_n", "shoe_force_{}_n"}) {
     for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {
@@ -165,8 +183,8 @@ void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
 }
 
 void CsvRecorder::CheckAll() const {
-  Check(history_, folder_ / "train_history.csv");
-  Check(pressures_, folder_ / "pressures.csv");
+  Check(history_, folder_ / kHistory);
+  Check(pressures_, folder_ / kPressures);
   for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
 }
 

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
+#include "ltd_master/plain_file.h"
 #include "train_dynamics/config/writer.h"
 #include "train_dynamics/numeric/digest.h"
 
@@ -17,10 +16,11 @@ namespace fs = std::filesystem;
 using train_dynamics::ScenarioParams;
 using train_dynamics::config::LoadedScenario;
 
-std::string Content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // [bytes], of 1.8 million wagons
+
+std::string VersionLine() { return "# train_brake " TRAIN_BRAKE_VERSION; }
+
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// The first line in which two texts differ, as "'now', was 'then'".
 std::string FirstDifference(const std::string& now, const std::string& then) {
@@ -36,7 +36,22 @@ std::string FirstDifference(const std::string& now, const std::string& then) {
   }
 }
 
-void CheckBranch(const LoadedScenario& now, const LoadedScenario& then) {
+/// The commands that the driver has given by then, as text.
+std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
+  std::string text;
+  for (const train_dynamics::BrakeCommand& command : scenario.commands) {
+    if (command.time_s > time_s) continue;
+    const bool applies = command.kind == train_dynamics::BrakeCommandKind::kApply;
+    text += fmt::format("({:g} s: {}) ", command.time_s,
+                        applies ? fmt::format("apply {:g} kPa", command.reduction_kpa)
+                        : command.kind == train_dynamics::BrakeCommandKind::kRelease ? "release"
+                                                                                     : "emergency");
+  }
+  return text.empty() ? "none" : text.substr(0, text.size() - 1);
+}
+
+/// What has been cannot be changed: neither what the state is of and counts by, nor the start, nor what the driver did.
+void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double time_s) {
   const auto keep = [](const char* key, const auto& value, const auto& was) {
     if (value == was) return;
     throw std::invalid_argument(
@@ -52,6 +67,13 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then) {
   if (p.DetailedVehicles() != q.DetailedVehicles()) {
     throw std::invalid_argument("detail_vehicles must stay as they are when a run is resumed");
   }
+  keep("initial_speed_kmh", p.initial_speed_kmh, q.initial_speed_kmh);
+  keep("start_position_m", p.start_position_m, q.start_position_m);
+  if (p.initial_slack != q.initial_slack) {
+    throw std::invalid_argument("initial_slack must stay as it is when a run is resumed");
+  }
+  keep(fmt::format("commands up to {:g} s", time_s).c_str(), CommandsUntil(time_s, p),
+       CommandsUntil(time_s, q));
   if (p.integrator != q.integrator) {
     throw std::invalid_argument("integrator must stay as it is when a run is resumed");
   }
@@ -64,7 +86,7 @@ train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
     throw std::invalid_argument(
         file.string() + " does not exist: the run has left no checkpoint, or it is no folder of a run");
   }
-  const std::string content = Content(file);
+  const std::string content = ReadPlainFile(file, kLargestFile);
   try {
     return train_dynamics::DecodeTrainCheckpoint({content.begin(), content.end()});
   } catch (const train_dynamics::SnapshotError& e) {
@@ -75,10 +97,10 @@ train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
 std::string IdentityOf(const ScenarioParams& scenario) {
   ScenarioParams named = scenario;
   if (!scenario.pressure_table.empty()) {
-    named.pressure_table =
-        fmt::format("digest {:016x}", train_dynamics::TextDigest(Content(scenario.pressure_table)));
+    named.pressure_table = fmt::format(
+        "digest {:016x}", train_dynamics::TextDigest(ReadPlainFile(scenario.pressure_table, kLargestFile)));
   }
-  return train_dynamics::config::Write(named);
+  return VersionLine() + "\n" + train_dynamics::config::Write(named);
 }
 
 ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>& overrides) {
@@ -86,6 +108,13 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
   train_dynamics::TrainCheckpoint checkpoint = ReadCheckpoint(folder / kCheckpointFile);
   LoadedScenario then = train_dynamics::config::LoadScenario(config.string(), {});
   const std::string identity = IdentityOf(then.params);
+  if (FirstLine(checkpoint.scenario) != VersionLine()) {
+    throw std::invalid_argument(fmt::format(
+        "{} was written by '{}', this is '{}': other versions may give other bits, so that none goes on with "
+        "a run of another",
+        (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2),
+        VersionLine().substr(2)));
+  }
   if (identity != checkpoint.scenario) {
     throw std::invalid_argument(
         fmt::format("{} is of another configuration than {}: there is now {}. Undo that, or change values "
@@ -96,7 +125,8 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
   }
   LoadedScenario now = train_dynamics::config::LoadScenario(config.string(), overrides);
   const bool is_branch = IdentityOf(now.params) != identity;
-  if (is_branch) CheckBranch(now, then);
+  if (is_branch)
+    CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
   if (static_cast<long>(checkpoint.exchange) >= now.params.Exchanges()) {
     throw std::invalid_argument(
         fmt::format("{} is of the end of the run, {:g} s: nothing is left to do; a larger duration_s goes on",

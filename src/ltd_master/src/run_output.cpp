@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <fstream>
 #include <regex>
@@ -35,9 +36,10 @@ bool IsResult(const std::string& name) {
 }
 
 bool HasMark(const fs::path& folder) {
-  std::ifstream config(folder / "config.yaml");
-  std::string line;
-  return std::getline(config, line) && line == kMark;
+  if (!fs::is_regular_file(folder / "config.yaml")) return false;
+  std::string begin(std::strlen(kMark), ' ');
+  std::ifstream(folder / "config.yaml").read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kMark;
 }
 
 void MakeFolder(const fs::path& folder) {
@@ -76,6 +78,22 @@ bool IsRecord(const std::string& name) {
   static const std::regex pattern(
       "train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
+}
+
+/// Bags as FILE.active: a copy of one is no whole bag, least of all where the disk gets full.
+void CopyRecords(const fs::path& from, const fs::path& to) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+    const std::string name = entry.path().filename().string();
+    if (!IsRecord(name) || !fs::is_regular_file(entry.path())) continue;
+    const fs::path copy = to / (name == kBag ? name + ".active" : name);
+    try {
+      fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+    } catch (const fs::filesystem_error& e) {
+      fs::remove(copy);
+      throw std::runtime_error("cannot copy " + entry.path().string() + " to " + to.string() + ": " +
+                               e.code().message());
+    }
+  }
 }
 
 std::string TextOf(const train_dynamics::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
@@ -134,25 +152,25 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
         "of its own, other than " +
         run.folder.string());
   }
-  train_dynamics::ByteReader checkpoint(run.checkpoint.output);
-  const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
   MakeFolder(folder_);
   lock_.emplace(folder_);
   if (is_elsewhere) {
     ClearFolder(folder_);
     WriteResolvedConfig(run.scenario.params, folder_);
-    for (const fs::directory_entry& entry : fs::directory_iterator(run.folder)) {
-      const std::string name = entry.path().filename().string();
-      if (!IsRecord(name)) continue;
-      fs::copy_file(entry.path(), folder_ / name, fs::copy_options::overwrite_existing);
-    }
+    CopyRecords(run.folder, folder_);
+  }
+  try {
+    train_dynamics::ByteReader checkpoint(run.checkpoint.output);
+    const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
+    const int vehicles = run.scenario.consist.vehicles();
+    // Each looks at what it goes on with before it changes anything.
+    if (!csv.empty()) csv_ = std::make_unique<CsvRecorder>(folder_, csv, vehicles);
+    if (!bag.empty()) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), bag, vehicles);
+  } catch (const train_dynamics::SnapshotError& e) {
+    throw std::invalid_argument((run.folder / kCheckpointFile).string() + " " + e.what());
   }
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
   for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
-  const fs::path bag_file = folder_ / kBag;
-  if (!bag.empty() && fs::exists(bag_file)) fs::rename(bag_file, bag_file.string() + ".active");
-  if (!bag.empty()) bag_ = std::make_unique<BagRecorder>(bag_file.string(), bag);
-  if (!csv.empty()) csv_ = std::make_unique<CsvRecorder>(folder_, csv);
   StartThread();
 }
 

@@ -5,7 +5,9 @@ usage: resume_test.py TRAIN_SIM CONFIG_FOLDER [--gtest_output=xml:FILE]
 """
 
 import json
+import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -33,6 +35,18 @@ def messages(bag_file):
     """Everything in a bag, byte by byte."""
     with rosbag.Bag(str(bag_file)) as bag:
         return [(topic, raw[1], time.to_nsec()) for topic, raw, time in bag.read_messages(raw=True)]
+
+
+def with_checksum(content):
+    """A forged checkpoint: the checksum guards against accidents only."""
+    words, mask, state = bytes(content[:-8]), (1 << 64) - 1, 0x9e3779b97f4a7c15
+    def mix(x):
+        x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93 & mask
+        x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93 & mask
+        return x ^ (x >> 32)
+    for at in range(0, len(words), 8):
+        state = mix(state ^ int.from_bytes(words[at:at + 8], "little"))
+    return words + mix(state ^ len(words)).to_bytes(8, "little")
 
 
 class ResumeTest(unittest.TestCase):
@@ -144,6 +158,10 @@ class ResumeTest(unittest.TestCase):
         for change, text in (("dt_s=0.0005", "dt_s must stay 0.001"), ("model=ltd", "model must stay 2d"),
                              ("train.consist[1].count=118", "number of vehicles must stay 242"),
                              ("detail_vehicles=[7]", "detail_vehicles must stay"),
+                             ("initial_speed_kmh=60", "initial_speed_kmh must stay 80"),
+                             ("initial_slack=bunched", "initial_slack must stay"),
+                             ("commands=[{time_s: 3, kind: emergency}]",
+                              "commands up to 30 s must stay (2 s: emergency) when a run is resumed, got (3 s: emergency)"),
                              ("duration_s=abc", "duration_s must be")):
             self.refused(text, "--resume", self.whole, "--set", change, "--out", self.out)
 
@@ -166,6 +184,67 @@ class ResumeTest(unittest.TestCase):
         content[8] = 77
         checkpoint.write_bytes(content)
         self.refused("format version 77", "--resume", self.out)
+
+    def test_records_that_are_not_those_of_the_checkpoint_are_refused(self):
+        shutil.copytree(self.whole, self.out)
+        longer = self.folder / "longer"
+        for name, text in (("train.bag", "is not the bag that the checkpoint is of"),
+                           ("pressures.csv", "is not the table that the checkpoint is of"),
+                           ("wagon_100.csv", "is not the table that the checkpoint is of")):
+            file = self.out / name
+            content = bytearray(file.read_bytes())
+            content[len(content) // 2] ^= 1
+            file.write_bytes(content)
+            self.refused(text, "--resume", self.out, "--set", "duration_s=31", "--out", longer)
+            content[len(content) // 2] ^= 1
+            file.write_bytes(content[:len(content) // 2])
+            self.refused("shorter than it was at the checkpoint", "--resume", self.out, "--set", "duration_s=31",
+                         "--out", longer)
+            file.unlink()
+            self.refused(f"{name}", "--resume", self.out, "--set", "duration_s=31", "--out", longer)
+            file.write_bytes(content)
+        done = train_sim("--resume", self.out, "--set", "duration_s=31", "--out", longer)
+        self.assertEqual(0, done.returncode, done.stderr)
+
+    def test_a_refused_run_stays_as_it_is(self):
+        self.break_off(signal.SIGINT, "--csv")
+        with open(self.out / "train.bag", "r+b") as bag:
+            bag.seek(100000)
+            bag.write(b"something else")
+        self.refused("train.bag is not the bag that the checkpoint is of", "--resume", self.out)
+        (self.out / "train.bag").unlink()
+        self.refused("train.bag.active does not exist", "--resume", self.out)
+        self.assertTrue((self.out / "summary.json").exists())
+
+    def test_what_never_ends_is_not_read(self):
+        shutil.copytree(self.whole, self.out)
+        checkpoint = self.out / "checkpoint"
+        checkpoint.unlink()
+        os.mkfifo(checkpoint)
+        done = train_sim("--resume", self.out)
+        self.assertEqual(2, done.returncode, done.stderr)
+        self.assertIn("checkpoint is not a regular file", done.stderr)
+        checkpoint.unlink()
+        checkpoint.symlink_to("/dev/zero")
+        done = train_sim("--resume", self.out)
+        self.assertEqual(2, done.returncode, done.stderr)
+        self.assertIn("checkpoint is not a regular file", done.stderr)
+        empty = self.folder / "empty"
+        empty.mkdir()
+        os.mkfifo(empty / "config.yaml")
+        done = train_sim(EMERGENCY, "--set", "duration_s=0.1", "--out", empty)
+        self.assertEqual(1, done.returncode, done.stderr)
+        self.assertIn("no run of train_brake", done.stderr)
+
+    def test_another_version_is_refused(self):
+        shutil.copytree(self.whole, self.out)
+        checkpoint = self.out / "checkpoint"
+        content = checkpoint.read_bytes()
+        version = re.search(rb"# train_brake (\d)", content)
+        changed = bytearray(content)
+        changed[version.start(1)] += 1
+        checkpoint.write_bytes(with_checksum(changed))
+        self.refused("was written by 'train_brake %d." % (int(version.group(1)) + 1), "--resume", self.out)
 
     def test_no_checkpoints_when_none_are_wanted(self):
         done = train_sim(EMERGENCY, "--set", "duration_s=1", "--checkpoint-interval", "0", "--out", self.out)

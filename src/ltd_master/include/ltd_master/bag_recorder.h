@@ -18,7 +18,7 @@ class BagRecorder {
   BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
 
   /// Goes on with a bag that a checkpoint is of, see BagWriter.
-  BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint);
+  BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint, int vehicles);
   train_dynamics::Bytes Checkpoint();
 
   /// An observer of the run's TrainMaster. @throws std::system_error

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/numeric/stream_digest.h"
 #include "train_dynamics/train/byte_stream.h"
 
 namespace ltd_master {
@@ -24,8 +25,9 @@ class BagWriter {
  public:
   /// @throws std::system_error if the file cannot be made
   explicit BagWriter(const std::string& file);
-  /// Goes on with a bag that a checkpoint is of; what came after that is cut off.
-  /// @throws std::system_error, std::runtime_error if FILE.active is shorter than it was
+  /// Goes on with a bag that a checkpoint is of, FILE or FILE.active; what came after that is cut off.
+  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then (the bag
+  ///         stays untouched); std::system_error
   BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
@@ -48,6 +50,8 @@ class BagWriter {
     ros::serialization::serialize(stream, message);
     if (chunk_.size() > kChunkThreshold) WriteChunk();
   }
+
+  int topics() const { return static_cast<int>(connections_.size()); }
 
   /// Writes what has come so far. @return what a writer needs to go on behind it
   train_dynamics::Bytes Checkpoint();
@@ -85,7 +89,8 @@ class BagWriter {
 
   std::string file_;
   int descriptor_;
-  std::uint64_t size_;  ///< of the file, up to its last whole chunk
+  std::uint64_t size_;                   ///< of the file, up to its last whole chunk
+  train_dynamics::StreamDigest digest_;  ///< of the file behind its header, up to the same
   std::vector<Connection> connections_;
   std::vector<Chunk> chunks_;    ///< in the file
   std::size_t kept_chunks_ = 0;  ///< of these, that a checkpoint is of

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <string>
 
+#include "train_dynamics/numeric/stream_digest.h"
 #include "train_dynamics/train/train_master.h"
 
 namespace ltd_master {
@@ -19,7 +21,8 @@ class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
   /// Goes on with tables that a checkpoint is of; what came after that is cut off.
-  CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint);
+  /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were (they stay untouched)
+  CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint, int vehicles);
   train_dynamics::Bytes Checkpoint();
 
   /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
@@ -35,7 +38,8 @@ class CsvRecorder {
   std::filesystem::path folder_;
   std::ofstream history_, pressures_;
   std::map<int, std::ofstream> wagons_;
-  std::vector<double> position_m_, speed_mps_;  ///< at the last record
+  std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
+  std::vector<double> position_m_, speed_mps_;                   ///< at the last record
 };
 
 }  // namespace ltd_master

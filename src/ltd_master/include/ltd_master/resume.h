@@ -19,7 +19,7 @@ inline constexpr const char* kBranchFile = "branched_from";
 train_dynamics::TrainCheckpoint ReadCheckpoint(const std::filesystem::path& file);
 
 /// What a checkpoint is of: the resolved scenario as text, with a digest in place of its pressure table's name.
-/// Runs of equal text are the same run, bit for bit.
+/// Its first line names the version of this program: runs of equal text are the same run, bit for bit.
 std::string IdentityOf(const train_dynamics::ScenarioParams& scenario);
 
 /// A run that goes on from the checkpoint in its folder.
@@ -34,7 +34,8 @@ struct ResumedRun {
 ///
 /// @param overrides  "path=value": makes it a branch, unless they change nothing. Driver commands, friction,
 ///                   duration, ... may change; what the state is of or counts by may not: the model, the train's
-///                   vehicles and connections, the times dt_s, exchange_, record_ and ledger_interval_s.
+///                   vehicles and connections, the times dt_s, exchange_, record_ and ledger_interval_s. Nor what lies
+///                   before the checkpoint: the start, and commands given until then.
 /// @throws std::invalid_argument if there is nothing to resume or it does not fit; config::Error
 ResumedRun LoadResumedRun(const std::filesystem::path& folder, const std::vector<std::string>& overrides);
 
