@@ -90,9 +90,12 @@ test-tsan: deps ## tests of everything with threads under the thread sanitizer, 
 	@$(tsan) tests $(quietly)
 	@$(call run_tests,build_tsan,3000,$(threaded))
 
-.PHONY: bench
-bench: build ## measure it all, MPI beside it: table here and in docs/performance.md; ONLY=runs,exchange for parts
+.PHONY: deps-bench
+deps-bench: deps
 	@tools/install_packages.sh packages_bench.txt
+
+.PHONY: bench
+bench: deps-bench build ## measure it all, MPI beside it: table here and in docs/performance.md; ONLY=runs,exchange for parts
 	@$(release) train_dynamics_bench ltd_master_bench $(quietly)
 	@. devel/setup.bash; PATH=/usr/bin:$$PATH /usr/bin/python3 tools/bench --only '$(ONLY)'
 

@@ -102,8 +102,8 @@ void PrintStability(const LoadedScenario& scenario) {
   if (scenario.consist.connection_type.empty()) return;
   // docs/validation.md: changes of the largest coupler forces against exchanges of 1 ms, as long as they are stable.
   constexpr double kErrorPerS = 1.3e6;  // [N/s]
-  Line("exchange", "{:g} ms; {}; coupler forces within about {:.2g} kN", kMs * p.exchange_interval_s,
-       ConnectionLimits(scenario), 1e-3 * kErrorPerS * p.exchange_interval_s);
+  Line("exchange", "{:g} ms; {}; it changes the paper's coupler forces by up to {:.2g} kN",
+       kMs * p.exchange_interval_s, ConnectionLimits(scenario), 1e-3 * kErrorPerS * p.exchange_interval_s);
 }
 
 void WarnOfRun(const CheckOptions& options, const RunPrediction& run, std::vector<std::string>& warnings) {
@@ -198,6 +198,7 @@ int CheckScenario(const CheckOptions& options) {
   }
   std::fflush(stdout);
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!run.fault.empty()) return kSimulationFault;
   return kSuccess;
 }
 

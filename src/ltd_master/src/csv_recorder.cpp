@@ -162,23 +162,21 @@ void CsvRecorder::OpenWagon(int vehicle, int vehicles) {
 }
 
 void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
-  std::ofstream couplers = Open(folder_ / "couplers.csv");
-  fmt::print(couplers,
-             "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n");
+  std::string couplers =
+      "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n";
   int number = 1;
   for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
-    fmt::print(couplers, "{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
-               extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
+    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
+                            extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
   }
-  std::ofstream vehicles = Open(folder_ / "vehicles.csv");
-  fmt::print(vehicles, "vehicle,position_m,speed_mps\n");
+  std::string vehicles = "vehicle,position_m,speed_mps\n";
   for (size_t i = 0; i < speed_mps_.size(); ++i) {
-    fmt::print(vehicles, "{},{:.12g},{:.9g}\n", i + 1, position_m_[i], speed_mps_[i]);
+    vehicles += fmt::format("{},{:.12g},{:.9g}\n", i + 1, position_m_[i], speed_mps_[i]);
   }
-  for (std::ofstream* stream : {&couplers, &vehicles, &history_, &pressures_}) stream->flush();
+  WriteFile(folder_ / "couplers.csv", couplers);
+  WriteFile(folder_ / "vehicles.csv", vehicles);
+  for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
   for (auto& [vehicle, stream] : wagons_) stream.flush();
-  Check(couplers, folder_ / "couplers.csv");
-  Check(vehicles, folder_ / "vehicles.csv");
   CheckAll();
 }
 

@@ -61,4 +61,17 @@ void AddToDigest(const fs::path& file, std::uint64_t from, std::uint64_t to,
   if (!is_whole) Refuse(file, "is shorter than it was at the checkpoint");
 }
 
+void WriteFile(const fs::path& file, const std::string& text) {
+  const fs::path unfinished = file.string() + ".unfinished";
+  std::ofstream stream(unfinished, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw std::runtime_error("cannot write " + file.string());
+  }
+  fs::rename(unfinished, file);
+}
+
 }  // namespace ltd_master

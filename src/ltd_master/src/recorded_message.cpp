@@ -30,12 +30,16 @@ class Source {
     return true;
   }
 
-  bool SkipHeader() {
+  /// Takes a header and gives its stamp. (What number a message has is the publisher's business.)
+  std::optional<ros::Time> TakeHeader() {
     std::uint32_t number = 0, seconds = 0, nanoseconds = 0, frame_id = 0;
     if (!Take(number) || !Take(seconds) || !Take(nanoseconds) || !Take(frame_id) || left() < frame_id)
-      return false;
+      return std::nullopt;
     at_ += frame_id;
-    return true;
+    ros::Time stamp;
+    stamp.sec = seconds;
+    stamp.nsec = nanoseconds;
+    return stamp;
   }
 
   /// Takes a text if it is as long as this one.
@@ -73,7 +77,13 @@ std::string Text(T value) {
 /// Walks through a message's fields and notes what differs.
 class Comparison {
  public:
-  explicit Comparison(const Bytes& recorded) : source_(recorded) { readable_ = source_.SkipHeader(); }
+  Comparison(const Bytes& recorded, const std_msgs::Header& header) : source_(recorded) {
+    const std::optional<ros::Time> stamp = source_.TakeHeader();
+    readable_ = stamp.has_value();
+    if (readable_ && *stamp != header.stamp) {
+      Add("header.stamp", {}, Text(stamp->toSec()) + " s", Text(header.stamp.toSec()) + " s");
+    }
+  }
 
   template <class T>
   void Number(const char* quantity, T repeated, const Owners& owners = Train) {
@@ -135,9 +145,9 @@ class Comparison {
 
   template <class T>
   void Judge(const char* quantity, T recorded, T repeated, const Owners& owners, std::size_t i) {
-    if (recorded == repeated) return;
+    if (std::memcmp(&recorded, &repeated, sizeof recorded) == 0) return;  // bit by bit: 0.0 is not -0.0
     if constexpr (std::is_floating_point_v<T>) {
-      if (std::isnan(recorded) && std::isnan(repeated)) return;
+      if (std::isnan(recorded) && std::isnan(repeated)) return;  // whose other bits no rule fixes
     }
     Add(quantity, owners(i), Text(recorded), Text(repeated));
   }
@@ -167,12 +177,12 @@ std::string Presentable(std::string text) {
 std::optional<std::uint64_t> ExchangeOf(const Bytes& message) {
   Source source(message);
   std::uint64_t exchange = 0;
-  if (!source.SkipHeader() || !source.Take(exchange)) return std::nullopt;
+  if (!source.TakeHeader() || !source.Take(exchange)) return std::nullopt;
   return exchange;
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::TrainState& repeated) {
-  Comparison comparison(recorded);
+  Comparison comparison(recorded, repeated.header);
   comparison.Number("exchange", repeated.exchange);
   comparison.Numbers("position_m", repeated.position_m, Vehicle);
   comparison.Numbers("speed_mps", repeated.speed_mps, Vehicle);
@@ -186,7 +196,7 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::T
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::InTrainForces& repeated) {
-  Comparison comparison(recorded);
+  Comparison comparison(recorded, repeated.header);
   comparison.Number("exchange", repeated.exchange);
   comparison.Numbers("coupler_force_n", repeated.coupler_force_n, Connection);
   comparison.Numbers("coupler_deflection_m", repeated.coupler_deflection_m, Connection);
@@ -194,14 +204,14 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::I
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::BrakePressures& repeated) {
-  Comparison comparison(recorded);
+  Comparison comparison(recorded, repeated.header);
   comparison.Number("exchange", repeated.exchange);
   comparison.Numbers("cylinder_pressure_pa", repeated.cylinder_pressure_pa, Vehicle);
   return comparison.Finish();
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::EnergyLedger& repeated) {
-  Comparison comparison(recorded);
+  Comparison comparison(recorded, repeated.header);
   comparison.Number("exchange", repeated.exchange);
   comparison.Texts("element", repeated.element);
   comparison.Numbers("dissipated_j", repeated.dissipated_j, [&](std::size_t i) {
@@ -230,7 +240,7 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::W
     const char* const half[] = {"front", "rear"};
     return Owner{number, fmt::format("{}, {} bogie, {} half", wagon, half[i / 2], half[i % 2])};
   };
-  Comparison comparison(recorded);
+  Comparison comparison(recorded, repeated.header);
   comparison.Number("exchange", repeated.exchange);
   comparison.Number("vehicle", repeated.vehicle);
   comparison.Elements("body_x_m", repeated.body_x_m, body);

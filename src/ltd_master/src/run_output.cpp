@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "ltd_master/plain_file.h"
 #include "train_dynamics/config/writer.h"
 
 namespace ltd_master {
@@ -106,19 +107,6 @@ long CheckpointExchanges(const OutputOptions& options, const ScenarioParams& sce
 
 }  // namespace
 
-void WriteFile(const fs::path& file, const std::string& text) {
-  const fs::path unfinished = file.string() + ".unfinished";
-  std::ofstream stream(unfinished, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) {
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
-    throw std::runtime_error("cannot write " + file.string());
-  }
-  fs::rename(unfinished, file);
-}
-
 RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& inputs,
                      const ScenarioParams& scenario)
     : options_(options),
@@ -133,6 +121,9 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
   }
   MakeFolder(folder_);
   lock_.emplace(folder_);
+  if (HasMark(folder_) && fs::exists(folder_ / kCheckpointFile) && !fs::exists(folder_ / "summary.json")) {
+    options.complain(folder_.string() + " held a run that was broken off; it is replaced (--resume goes on)");
+  }
   ClearFolder(folder_);
   WriteResolvedConfig(scenario, folder_);
   if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), scenario);
@@ -234,8 +225,8 @@ void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::str
   };
   if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
   if (bag_ != nullptr) attempt([&] { bag_->Close(); });
-  if (csv_ != nullptr) attempt([&] { csv_->Close(master); });
   attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
+  if (csv_ != nullptr) attempt([&] { csv_->Close(master); });
   if (error != nullptr) std::rethrow_exception(error);
 }
 

@@ -104,26 +104,26 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
     prediction.bag_bytes = bag.bytes();
     queue_bytes = kQueuedRecords * bag.bytes_per_record();
   });
-  // By records, of which the median is taken: other work on the machine spoils single ones.
-  const int per_record = params.ExchangesPerRecord();
-  std::vector<double> record_s;
+  // By batches, of which the median is taken: other work on the machine spoils single ones.
+  const int batch = std::min(params.ExchangesPerRecord(), 50);
+  std::vector<double> batch_s;
   try {
     master.Start();
     const Clock::time_point start = Clock::now();
     for (Clock::time_point last = start; !master.Done();) {
-      for (int i = 0; i < per_record; ++i) master.Exchange();
+      for (int i = 0; i < batch && !master.Done(); ++i) master.Exchange();
       const Clock::time_point now = Clock::now();
-      record_s.push_back(Seconds(now - last));
+      batch_s.push_back(Seconds(now - last));
       last = now;
       if (master.exchange() >= kExchanges || Seconds(now - start) > kLongest) break;
     }
   } catch (const train_dynamics::SimulationFault& e) {
     prediction.fault = e.what();
   }
-  if (!record_s.empty()) {
-    const auto median = record_s.begin() + static_cast<long>(record_s.size() / 2);
-    std::nth_element(record_s.begin(), median, record_s.end());
-    prediction.exchange_s = *median / per_record;
+  if (!batch_s.empty()) {
+    const auto median = batch_s.begin() + static_cast<long>(batch_s.size() / 2);
+    std::nth_element(batch_s.begin(), median, batch_s.end());
+    prediction.exchange_s = *median / batch;
   }
   prediction.wall_s = prediction.exchange_s * static_cast<double>(params.Exchanges());
   prediction.memory_bytes = PeakMemory() + queue_bytes;

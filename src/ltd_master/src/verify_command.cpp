@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
 #include "ltd_master/conversions.h"
 #include "ltd_master/interrupt.h"
+#include "ltd_master/plain_file.h"
 #include "ltd_master/progress.h"
 #include "ltd_master/recorded_message.h"
 #include "ltd_master/recorded_run.h"
@@ -38,15 +41,22 @@ fs::path BagOf(const fs::path& recording) {
   throw UnreadableBag("the folder holds no train.bag");
 }
 
+fs::path FolderOf(const fs::path& recording) {
+  return fs::is_directory(recording) ? recording : recording.parent_path();
+}
+
+/// Whether what lies in its folder is of the same run: a folder of results, or the bag in it.
+bool IsOfARun(const fs::path& recording) {
+  return fs::is_directory(recording) || recording.filename() == "train.bag";
+}
+
 /// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
 LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   using train_dynamics::config::LoadScenario;
   if (!options.config.empty()) return LoadScenario(options.config, {});
-  const fs::path recording(options.recording);
-  const bool is_folder = fs::is_directory(recording);
-  const fs::path beside = (is_folder ? recording : recording.parent_path()) / "config.yaml";
+  const fs::path beside = FolderOf(options.recording) / "config.yaml";
   const std::optional<std::string> within = recorded.Scenario();
-  if (within && !(is_folder && fs::exists(beside))) {
+  if (within && !(IsOfARun(options.recording) && fs::exists(beside))) {
     return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
   }
   if (fs::exists(beside)) return LoadScenario(beside.string(), {});
@@ -56,7 +66,7 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
 
 /// Where the run left another one, if it did.
 std::optional<train_dynamics::TrainCheckpoint> BranchOf(const fs::path& recording) {
-  const fs::path file = (fs::is_directory(recording) ? recording : recording.parent_path()) / kBranchFile;
+  const fs::path file = FolderOf(recording) / kBranchFile;
   if (!fs::exists(file)) return std::nullopt;
   return ReadCheckpoint(file);
 }
@@ -84,6 +94,8 @@ class Comparison {
   bool Differs() const { return !differences_.empty(); }
   bool Finished() const { return Differs() || recorded_.state().done(); }
   long records() const { return records_; }  ///< that are the same
+  /// What the bag has of other topics less than of the state, as text; empty: nothing.
+  std::string Missing() const;
   /// The first record that differs, the vehicle and the quantity.
   std::string Verdict() const;
 
@@ -95,10 +107,12 @@ class Comparison {
   RecordedRun& recorded_;
   const int vehicles_;
   long records_ = 0;
+  bool is_recorded_ = false;  ///< the state at the last record
   double initial_j_ = 0.0;
   double time_s_ = 0.0;         ///< of the last record
   std::uint64_t exchange_ = 0;  ///< of the last record
   std::vector<Difference> differences_;
+  std::map<std::string, long> missing_;  ///< messages, by topic
 
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
@@ -110,7 +124,10 @@ class Comparison {
 /// Compares what the topic has about this record with the message that `make` fills, if one is due.
 template <class Message, class Make>
 void Comparison::Check(RecordedTopic* topic, const TrainRecord& record, Message& message, const Make& make) {
-  for (; topic != nullptr && !topic->done() && topic->exchange() <= record.exchange; topic->Advance()) {
+  if (topic == nullptr) return;
+  const bool is_there = !topic->done() && topic->exchange() <= record.exchange;
+  if (!is_there && is_recorded_ && make(message)) ++missing_[topic->name()];
+  for (; !topic->done() && topic->exchange() <= record.exchange; topic->Advance()) {
     if (topic->exchange() == record.exchange && make(message)) {
       const std::vector<Difference> found = Compare(topic->message(), message);
       differences_.insert(differences_.end(), found.begin(), found.end());
@@ -154,7 +171,7 @@ void Comparison::Observe(const TrainRecord& record) {
   if (record.exchange == 0) initial_j_ = record.ledger->Stored();
   time_s_ = record.time_s;
   exchange_ = record.exchange;
-  const bool is_recorded = recorded_.state().exchange() == record.exchange;
+  is_recorded_ = recorded_.state().exchange() == record.exchange;
   CheckWagons(record);
   Check(&recorded_.state(), record, state_, convert);
   Check(recorded_.pressures(), record, pressures_, convert);
@@ -163,7 +180,15 @@ void Comparison::Observe(const TrainRecord& record) {
     if (record.ledger != nullptr) Convert(record, *record.ledger, initial_j_, message);
     return record.ledger != nullptr;
   });
-  if (is_recorded && !Differs()) ++records_;
+  if (is_recorded_ && !Differs()) ++records_;
+}
+
+std::string Comparison::Missing() const {
+  std::string text;
+  for (const auto& [topic, count] : missing_) {
+    text += fmt::format("  not in the bag: {} message(s) of {}\n", count, topic);
+  }
+  return text;
 }
 
 std::string Comparison::Verdict() const {
@@ -191,6 +216,17 @@ std::string Comparison::Verdict() const {
       "  {} of {} vehicles differ in it; the {} records before it are the same\n",
       time_s_, exchange_, Presentable(what),
       std::count_if(differences_.begin(), differences_.end(), is_vehicle), vehicles_, records_);
+}
+
+/// The digest in the summary.json of a whole run, where the recording is such a run's; else nothing.
+std::optional<std::string> DigestInSummary(const fs::path& recording) {
+  const fs::path file = FolderOf(recording) / "summary.json";
+  if (!IsOfARun(recording) || !fs::exists(file)) return std::nullopt;
+  const std::string text = ReadPlainFile(file, 1 << 20);
+  static const std::regex pattern("\"complete\": true[^]*\"state_digest\": \"([0-9a-f]*)\"");
+  std::smatch match;
+  if (!std::regex_search(text, match, pattern)) return std::nullopt;
+  return match[1];
 }
 
 int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
@@ -247,9 +283,16 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
                params.duration_s, comparison.records());
     return kIncomplete;
   }
+  const std::string digest = fmt::format("{:016x}", master.state_digest());
+  const std::string summarised = DigestInSummary(options.recording).value_or(digest);
+  if (summarised != digest) {
+    fmt::print("different: the records are the same, but summary.json has the digest {}, now it is {}\n",
+               Presentable(summarised), digest);
+    return kDifferent;
+  }
   const std::string begin = branch ? fmt::format("from {:g} s, where it left another run, ", start_s) : "";
-  fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {:016x}{}\n", comparison.records(),
-             all, scenario.consist.vehicles(), begin, params.duration_s, master.state_digest(), covered);
+  fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
+             scenario.consist.vehicles(), begin, params.duration_s, digest, covered, comparison.Missing());
   return kSuccess;
 }
 

@@ -10,6 +10,7 @@ import os
 import pathlib
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -197,8 +198,8 @@ class TrainSimTest(unittest.TestCase):
         lines, warnings = self.check(EMERGENCY)
         self.assertEqual("", warnings)
         self.assertEqual("1 ms; ore_wagon stable to 1.745 ms", lines["step"])
-        self.assertEqual("1 ms; calibrated stable to 6.61 ms at 900 kN, draw_bar stable to 23.2 ms; coupler forces within "
-                         "about 1.3 kN", lines["exchange"])
+        self.assertEqual("1 ms; calibrated stable to 6.61 ms at 900 kN, draw_bar stable to 23.2 ms; it changes the "
+                         "paper's coupler forces by up to 1.3 kN", lines["exchange"])
         self.assertRegex(lines["wall time"], r"^about [\d.]+ s with \d+ thread\(s\), [\d.]+ x real time$")
         self.assertRegex(lines["memory"], r"^about \d+ MB$")
         lines, warnings = self.check(DIP)
@@ -448,6 +449,44 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("/b, /train; choose one with --train", self.verify(both.filename, code=6))
         self.assertIn("holds no train /c but", self.verify(both.filename, "--train", "/c", code=6))
         self.verify(both.filename, "--train", "/b", "--config", self.out / "config.yaml", code=0)
+
+    def test_verify_looks_at_what_is_missing_and_beside(self):
+        self.run_ok(EMERGENCY, "--out", self.out, *SHORT)
+
+        def with_holes(topic, message):
+            lost = topic == "/train/in_train_forces" and message.exchange in (100, 300)
+            return None if lost else (topic, message)
+
+        verdict = self.verify(self.rewrite(self.out / "train.bag", with_holes), code=0)
+        self.assertIn("not in the bag: 2 message(s) of /train/in_train_forces", verdict)
+        summary = self.out / "summary.json"
+        text = summary.read_text()
+        digest = json.loads(text)["state_digest"]
+        summary.write_text(text.replace(digest, "0123456789abcdef"))
+        for recording in (self.out, self.out / "train.bag"):
+            verdict = self.verify(recording, code=5)
+            self.assertIn("summary.json has the digest 0123456789abcdef, now it is " + digest, verdict)
+
+    def test_verify_finds_the_pressure_table_beside_the_bag(self):
+        first = pathlib.Path(self.folder.name) / "first"
+        self.run_ok(EMERGENCY, "--csv", "--out", first, *SHORT)
+        self.run_ok(EMERGENCY, "--set", f"pressure_table={first / 'pressures.csv'}", "--out", self.out, *SHORT)
+        shutil.rmtree(first)
+        for recording in (self.out, self.out / "train.bag"):
+            self.assertIn("same: 51 of 51 records", self.verify(recording, code=0))
+
+    def test_check_tells_of_a_breakdown(self):
+        done = train_sim("check", DIP, "--set", "initial_speed_kmh=400", "--set", "track.dips[0].depth_m=1",
+                         "--set", "track.dips[0].length_m=2", "--set", "track.dips[0].from_m=6")
+        self.assertEqual(3, done.returncode, done.stdout + done.stderr)
+        self.assertIn("broke down in the trial: vehicle 1", done.stderr)
+
+    def test_a_run_that_was_broken_off_is_not_replaced_in_silence(self):
+        self.run_ok(EMERGENCY, "--out", self.out, *SHORT, "--checkpoint-interval", "0.2")
+        (self.out / "summary.json").unlink()  # as after a kill
+        done = train_sim("run", EMERGENCY, "--out", self.out, *SHORT)
+        self.assertEqual(0, done.returncode, done.stderr)
+        self.assertIn("held a run that was broken off", done.stderr)
 
     def test_verify_names_the_first_difference(self):
         self.run_ok(EMERGENCY, "--out", self.out, *SHORT)

@@ -20,4 +20,7 @@ std::string ReadPlainFile(const std::filesystem::path& file, std::uint64_t max_b
 void AddToDigest(const std::filesystem::path& file, std::uint64_t from, std::uint64_t to,
                  train_dynamics::StreamDigest& digest);
 
+/// Writes a whole file or nothing. @throws std::runtime_error
+void WriteFile(const std::filesystem::path& file, const std::string& text);
+
 }  // namespace ltd_master

@@ -11,6 +11,7 @@
 #include "ltd_master/bag_recorder.h"
 #include "ltd_master/csv_recorder.h"
 #include "ltd_master/folder_lock.h"
+#include "ltd_master/plain_file.h"
 #include "ltd_master/recorder_thread.h"
 #include "ltd_master/resume.h"
 #include "train_dynamics/train/run_summary.h"
@@ -29,6 +30,7 @@ struct OutputOptions {
   bool csv = false;
   double checkpoint_interval_s = 10.0;  ///< of simulated time; 0: none
   OnWriteError on_write_error = OnWriteError::kStop;
+  /// Told at once of what the run goes on in spite of.
   std::function<void(const std::string&)> complain = [](const std::string&) {
   };  ///< at once, where the run goes on
 };
@@ -85,8 +87,5 @@ class RunOutput {
   std::unique_ptr<CsvRecorder> csv_;
   std::unique_ptr<RecorderThread> thread_;  ///< ends before its recorders do
 };
-
-/// Writes a whole file or nothing. @throws std::runtime_error
-void WriteFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace ltd_master
