@@ -15,11 +15,13 @@ import subprocess
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 import numpy
 import rosbag
 import rosunit
 
+from train_brake_report import bag as report_bag
 from train_brake_report import cards, command, figure, paper, slides, wave
 from train_brake_report.bag import Table
 from train_brake_report.run import Run
@@ -386,11 +388,31 @@ class ReportTest(unittest.TestCase):
         empty = self.here / "empty.bag"
         empty.touch()
         self.assert_refused(empty, "empty.bag: it is empty", "Run again")
-        self.assert_refused(self.here / "none.bag", "none.bag cannot be read: No such file")
+        self.assert_refused(self.here / "none.bag", "none.bag: it cannot be read: No such file")
         self.assert_refused(HERE / "short_train.yaml", "short_train.yaml: this is not a bag")
         for drop in (lambda *_: None, lambda topic, *rest: (topic, *rest) if "ledger" in topic else None):
             other = rewritten(six_wagons() / "train.bag", self.here / "other.bag", drop)
             self.assert_refused(other, "no records of a train")
+
+    def test_a_bag_cannot_bring_a_program(self):
+        """rosbag makes Python of the definitions in a bag; the report must not, whatever they are attached to."""
+        sign = self.here / "ran"
+        evil = f"int32 _type;open({str(sign)!r}, 'w');Y=1\n"
+        for topic, kind in (("/train/state", "TrainState"), ("/train/scenario", "std_msgs/String"), ("/x", "x/X")):
+            for md5sum in (None, "0" * 32):
+                bag = self.here / "evil.bag"
+                with rosbag.Bag(str(six_wagons() / "train.bag")) as old, rosbag.Bag(str(bag), "w") as new:
+                    for name, raw, stamp, header in old.read_messages(raw=True, return_connection_header=True):
+                        if name == topic or topic == "/x":
+                            header = {**header, "message_definition": evil, "md5sum": md5sum or header["md5sum"]}
+                            raw = (raw[0], raw[1], header["md5sum"], *raw[3:])
+                        new.write(name, raw, stamp, raw=True, connection_header=header)
+                self.assert_refused(bag, "defines", kind if topic != "/x" else "train_brake_msgs/", "the version that wrote")
+                self.assertFalse(sign.exists())
+
+    def test_our_own_errors_are_not_called_damage(self):
+        with mock.patch.object(report_bag, "_table", side_effect=ZeroDivisionError), self.assertRaises(ZeroDivisionError):
+            Run(six_wagons(), None)
 
     def test_rosbag_reindex_is_a_remedy(self):
         whole = (two_d() / "train.bag").read_bytes()

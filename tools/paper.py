@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "src" / "train_brake" / "src"))
+sys.path[:0] = [str(ROOT / "src" / "train_brake" / "src"), str(ROOT / "devel" / "lib" / "python3" / "dist-packages")]
 
 from train_brake_report.command import main as report  # noqa: E402
 from train_brake_report.paper import COUPLER, COUPLER_TENSION_KN, MODELS, SCENARIOS, SPEED_KMH  # noqa: E402

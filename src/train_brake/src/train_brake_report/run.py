@@ -135,7 +135,7 @@ class Run:
     def digest(self) -> Optional[str]:
         """Of all states up to the last record of the bag."""
         state = self.recording.state
-        return f"{state['state_digest'][-1]:016x}" if state is not None and "state_digest" in state else None
+        return f"{state['state_digest'][-1]:016x}" if state is not None else None
 
     @functools.cached_property
     def masses_kg(self) -> numpy.ndarray:
