@@ -38,6 +38,8 @@ Widget* Add(QHBoxLayout* row, const QString& label, const QString& name) {
   return widget;
 }
 
+constexpr const char* kReady = "ready: press Play";
+
 /// "coupler_force" for people.
 QString Spoken(const std::string& name) { return QString::fromStdString(name).replace('_', ' '); }
 
@@ -117,10 +119,12 @@ void RunPanel::ShowStatus(const RunStatus& status) {
     pace_->setValue(status.wanted_real_time_factor);
   }
   if (ended) ShowAnswer(true, "the run has ended");
-  if (!ended && !was_known) ShowAnswer(true, paused ? "ready: press Play" : "");
+  if (!ended && !was_known) ShowAnswer(true, paused ? kReady : "");
+  if (!paused && message_->text() == kReady) ShowAnswer(true, "");
 }
 
 void RunPanel::ShowSelection(const ViewSelection& selection) {
+  if (!train_.param("view/live", true)) ShowAnswer(true, "a recording: no run to control");
   quantity_->setEnabled(true);
   quantity_->clear();
   for (const std::string& name : selection.quantities) {

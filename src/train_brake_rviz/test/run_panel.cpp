@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QSpinBox>
 #include <QTest>
+#include <algorithm>
 #include <functional>
 
 namespace train_brake_rviz {
@@ -92,6 +93,29 @@ TEST_F(RunPanelTest, PlayAndPause) {
   const auto held = status_.exchange;
   Comes([] { return false; }, 0.5);
   EXPECT_EQ(held, status_.exchange);
+}
+
+TEST_F(RunPanelTest, InvitesToPlayOnlyWhileTheTrainWaits) {
+  RunPanel other;  // which begins with a paused train
+  const auto invites = [&other] {
+    const QList<QLabel*> labels = other.findChildren<QLabel*>();
+    return std::any_of(labels.begin(), labels.end(),
+                       [](const QLabel* label) { return label->text() == "ready: press Play"; });
+  };
+  ASSERT_TRUE(Comes(invites));
+  EXPECT_TRUE(RunClient(ros::NodeHandle("/train")).Resume().success);  // by somebody else
+  EXPECT_TRUE(Comes([&] { return !invites(); }));
+}
+
+TEST_F(RunPanelTest, SaysThatARecordingIsNotControlled) {
+  node_.setParam("/train/view/live", false);
+  RunPanel of_a_bag;
+  EXPECT_TRUE(Comes([&of_a_bag] {
+    const QList<QLabel*> labels = of_a_bag.findChildren<QLabel*>();
+    return std::any_of(labels.begin(), labels.end(),
+                       [](const QLabel* label) { return label->text() == "a recording: no run to control"; });
+  }));
+  node_.deleteParam("/train/view/live");
 }
 
 TEST_F(RunPanelTest, StepMovesThePausedTrainByTheChosenExchanges) {
