@@ -1,5 +1,6 @@
 #include "train_brake_rviz/board/board.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -169,6 +170,58 @@ TEST(Board, DrawsWhatIsThereOfAnIncompleteRecord) {
     }
   }
   EXPECT_TRUE(board.Draw({}, {}).train.vertices().empty());
+}
+
+TEST(Board, WritesADashForWhatIsNotKnown) {
+  const ScenarioParams scenario = Load("emergency");
+  Snapshot snapshot = Travelled(scenario, 10.0, 1e5);
+  Board board(scenario);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  snapshot.wagon.emplace();  // as before the first exchange: where the bodies are, but no forces
+  snapshot.wagon->output.normal_force_n.fill(kUnknown);
+  snapshot.wagon->output.creep_force_n.fill(kUnknown);
+  snapshot.wagon->output.shoe_force_n.fill(kUnknown);
+  snapshot.wagon->output.creepage.fill(kUnknown);
+  snapshot.coupler_force_n[99] = kUnknown;
+  const Picture picture = board.Draw(snapshot, {FindQuantity("slip"), 99});
+  int dashes = 0;
+  for (const Drawing* part : PartsOf(picture)) {
+    for (const Text& text : part->texts()) {
+      EXPECT_EQ(std::string::npos, text.words.find("nan")) << text.words;
+      if (text.words.rfind("- ", 0) == 0) ++dashes;
+    }
+  }
+  EXPECT_EQ(8, dashes);  // load and slip of four wheelsets
+  for (const Vertex& vertex : picture.close_up.vertices()) {
+    ASSERT_TRUE(std::isfinite(vertex.at.right) && std::isfinite(vertex.at.up));
+  }
+}
+
+TEST(Board, SpeedIsThatOfTheMomentum) {
+  const ScenarioParams scenario = Load("emergency", {"train.consist[0].vehicle.carbody.mass_kg=36000000"});
+  Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
+  const train_dynamics::Consist consist(scenario.train);
+  snapshot.speed_mps[0] = 11.0;
+  double mass_kg = 0.0;
+  for (int i = 0; i < consist.vehicles(); ++i) mass_kg += consist.vehicle(i).TotalMass();
+  const double expected = 22.0 - 11.0 * consist.vehicle(0).TotalMass() / mass_kg;
+  EXPECT_LT(expected, 20.0);
+  bool shown = false;
+  const Picture picture = Board(scenario).Draw(snapshot, {});
+  for (const Text& text : picture.numbers.texts()) {
+    shown = shown || text.words == fmt::format("{:.1f} km/h", 3.6 * expected);
+  }
+  EXPECT_TRUE(shown);
+}
+
+TEST(Board, SlipOfAnEmergencyStopIsSeen) {
+  const ScenarioParams scenario = Load("emergency");
+  Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
+  snapshot.creepage.assign(242, 4e-4);
+  const Quantity& slip = *FindQuantity("slip");
+  Board board(scenario);
+  const Color color = ColorOf(slip, 0.04, 0.05);
+  EXPECT_GT(AreaOf(board.Draw(snapshot, {&slip, 0}).train, color), 0.0);
 }
 
 TEST(Board, FindsTheLocomotivesOfThePapersTrain) {

@@ -28,6 +28,7 @@ std::vector<double> Axis::Ticks(int count) const {
 }
 
 std::string Rounded(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
   const double unit = std::pow(10.0, -decimals);
   const bool is_zero = std::abs(value) < 0.5 * unit;
   return fmt::format("{:.{}f}", is_zero ? 0.0 : value, decimals);

@@ -63,6 +63,7 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
       vertical_exaggeration_(options.vertical_exaggeration),
       force_limit_kn_(kLeastForce),
       pressure_limit_kpa_(kLeastPressure) {
+  for (int i = 0; i < vehicles(); ++i) masses_kg_.push_back(consist_.vehicle(i).TotalMass());
   int first = 0;
   for (const train_dynamics::ConsistGroupParams& group : scenario.train.consist) {
     if (group.count == 1 && vehicles() > 1) locomotives_.push_back(first);
@@ -153,8 +154,9 @@ void Board::DrawNumbers(Drawing& drawing, const Snapshot& snapshot) const {
   };
   card("time", fmt::format("{:.2f} s", snapshot.time_s), 22.0);
   if (!snapshot.speed_mps.empty()) {
-    const double sum = std::accumulate(snapshot.speed_mps.begin(), snapshot.speed_mps.end(), 0.0);
-    const double mean = sum / static_cast<double>(snapshot.speed_mps.size());
+    const double momentum =
+        std::inner_product(masses_kg_.begin(), masses_kg_.end(), snapshot.speed_mps.begin(), 0.0);
+    const double mean = momentum / std::accumulate(masses_kg_.begin(), masses_kg_.end(), 0.0);
     card("speed", fmt::format("{:.1f} km/h", kKmhPerMps * mean), 25.0);
     card("distance", fmt::format("{:.0f} m", snapshot.position_m.front() - scenario_.start_position_m), 21.0);
   }

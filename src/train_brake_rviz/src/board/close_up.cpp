@@ -190,9 +190,13 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     const Point contact = {axle.right, axle.up - scale_ * radius};
     drawing.On(Layer::kTop);
     const double load = detail.output.normal_force_n[i], creep = detail.output.creep_force_n[i];
-    drawing.Arrow({contact.right, contact.up - kLoadScale * load}, contact, kWidth, palette::kGreen);
-    drawing.Arrow({contact.right, contact.up - 0.1},
-                  {contact.right + kFrictionScale * creep, contact.up - 0.1}, kWidth, palette::kOrange);
+    const auto arrow = [&](Point from, Point to, Color color) {
+      const bool is_known = std::isfinite(from.up) && std::isfinite(to.right) && std::isfinite(to.up);
+      if (is_known) drawing.Arrow(from, to, kWidth, color);
+    };
+    arrow({contact.right, contact.up - kLoadScale * load}, contact, palette::kGreen);
+    arrow({contact.right, contact.up - 0.1}, {contact.right + kFrictionScale * creep, contact.up - 0.1},
+          palette::kOrange);
 
     // The shoe stands on the bogie's inner side of the wheel. Its friction acts along the tread: against a
     // forward turning wheel, upwards on the front half of the wheel and downwards on the rear half.
@@ -200,7 +204,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     const double side = (on_front_half ? -1.0 : 1.0) * scale_ * radius;
     const double shoe = (on_front_half ? 1.0 : -1.0) * kFrictionScale * detail.output.shoe_force_n[i];
     const Point tread = {axle.right + side, axle.up};
-    drawing.Arrow(tread, {tread.right, tread.up + shoe}, kWidth, palette::kPurple);
+    arrow(tread, {tread.right, tread.up + shoe}, palette::kPurple);
 
     drawing.Write({contact.right, area_.bottom + kLoadText}, Align::kCentre, layout::kSmallText,
                   Kilonewtons(load));
@@ -211,7 +215,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
 
 void CloseUp::DrawCouplerForce(Drawing& drawing, const BodyVector<double>& position, double end,
                                double force_n) const {
-  if (force_n == 0.0) return;
+  if (force_n == 0.0 || !std::isfinite(force_n)) return;
   constexpr double kWidth = 0.8, kGap = 0.6, kNumberAway = 8.0, kNumberUp = 2.4;
   const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;
   const double outwards = -end;  // to the right on the board

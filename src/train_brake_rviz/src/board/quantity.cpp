@@ -22,7 +22,7 @@ const std::vector<Quantity>& Quantities() {
        VehicleCouplerForces},
       {"pressure", "cylinder pressure", "kPa", 1e-3, 100.0, false, "", "",
        [](const Snapshot& s) { return s.cylinder_pressure_pa; }},
-      {"slip", "wheel slip", "%", 100.0, 1.0, false, "", "",
+      {"slip", "wheel slip", "%", 100.0, 0.05, false, "", "",
        [](const Snapshot& s) {
          std::vector<double> size = s.creepage;
          for (double& creepage : size) creepage = std::abs(creepage);

@@ -20,7 +20,7 @@ struct Axis {
   std::vector<double> Ticks(int count) const;
 };
 
-/// A number with so many decimals, never "-0".
+/// A number with so many decimals, never "-0"; a dash for what is not finite.
 std::string Rounded(double value, int decimals);
 
 /// A tick's number with as many decimals as its distance from the next one asks for.

@@ -70,7 +70,8 @@ class Board {
 
   train_dynamics::ScenarioParams scenario_;
   train_dynamics::Consist consist_;
-  std::vector<int> locomotives_;  ///< indices
+  std::vector<int> locomotives_;   ///< indices
+  std::vector<double> masses_kg_;  ///< [vehicle]
   BoardOptions options_;
   Elevation elevation_;
   double window_m_;  ///< length of track that is seen
