@@ -22,9 +22,11 @@ import rosbag
 import rosunit
 
 from train_brake_report import bag as report_bag
-from train_brake_report import cards, command, figure, paper, slides, wave
+from train_brake_report import cards, command, figure, paper, series, slides, wave
 from train_brake_report.bag import Table
-from train_brake_report.run import Run
+from train_brake_report.figures import space_time
+from train_brake_report.group import Group
+from train_brake_report.run import Run, label_runs
 
 HERE = pathlib.Path(__file__).resolve().parent
 CONFIG = HERE.parent / "config"
@@ -60,6 +62,12 @@ def rewritten(bag, out, change):
             if message is not None:
                 new.write(*message, raw=True)
     return out
+
+
+def group_of(*folders):
+    runs = [Run(folder, None) for folder in folders]
+    label_runs(runs)
+    return Group("", runs, 100, None)
 
 
 class Page:
@@ -161,12 +169,39 @@ class ReportTest(unittest.TestCase):
             self.assertIn(difference, page.figures[name], name)
         self.assertIn("2D train has the same", page.caption("pressures"))
         of_runs = [json.loads((folder / "summary.json").read_text())["final_speed_kmh"]["mean"] for folder in (ltd(), two_d())]
-        self.assertIn(f"{difference}: {of_runs[1] - of_runs[0]:+.4f} km/h at the end", page.caption("speeds"))
+        self.assertIn(f"{difference}: {figure.minus(f'{of_runs[1] - of_runs[0]:+.4f}')} km/h at the last common instant",
+                      page.caption("speeds"))
 
     def test_runs_of_unlike_trains_are_not_subtracted(self):
         page = self.page(ltd(), six_wagons())
         self.assertNotIn("\u2212 LTD", page.caption("speeds"))
         self.assertEqual(2, len(page.numbers))
+
+    def test_pictures_reach_as_far_as_the_longest_run(self):
+        group = group_of(simulated("short", "emergency", "--model", "ltd", "--set", "duration_s=4"), two_d())
+        for panel in space_time.draw_acceleration(group).canvas.axes[:2]:
+            self.assertEqual((0.0, 10.0), tuple(numpy.round(panel.get_xlim(), 1)))
+
+    def test_runs_that_share_no_instant_are_not_subtracted(self):
+        early, late = (rewritten(two_d() / "train.bag", self.here / f"{name}.bag",
+                                 lambda topic, raw, stamp: (topic, raw, stamp) if is_in(stamp.to_sec()) else None)
+                       for name, is_in in (("early", lambda t: t < 4.995), ("late", lambda t: t > 4.995)))
+        page = self.page(early, late)
+        for name in ("speeds", "pressures", "coupler_105", "coupler_force_picture", "pressure_picture"):
+            self.assertIn("No difference: late and early have no instant in common.", page.caption(name), name)
+            self.assertNotIn("the same", page.caption(name))
+
+    def test_runs_that_cannot_be_drawn_are_named_with_their_reason(self):
+        page = self.page(simulated("dip", "dip"), ltd())
+        for name in ("largest_coupler_forces", "coupler_105"):
+            self.assertIn("Not shown: 2D train: a single vehicle has no coupler.", page.caption(name))
+        self.assertIn("Not shown: 2D train: a picture along the train needs more than one vehicle.",
+                      page.caption("acceleration_picture"))
+        self.assertIn("Not shown: 2D train: a wave is seen on a train of four vehicles or more.", page.caption("brake_wave"))
+
+    def test_a_train_at_rest(self):
+        page = self.page(simulated("rest", "../../test/short_train", "--set", "initial_speed_kmh=0"))
+        self.assertIn("The train stood at the start", page.left_out["Energy ledger"])
 
     def test_an_ltd_run_has_no_slip(self):
         page = self.page(ltd())
@@ -178,9 +213,23 @@ class ReportTest(unittest.TestCase):
         page = self.page(run)
         ours = json.loads((run / "summary.json").read_text())["final_speed_kmh"]["mean"]
         printed = paper.SPEED_KMH["ltd", "emergency"]
-        self.assertRegex(page.figures["table_1"], rf"{printed:.2f}</td>.*{ours:.3f}</td>.*{ours - printed:+.3f}</td>")
+        self.assertRegex(page.figures["table_1"], rf"{printed:.2f}</td>.*{ours:.3f}</td>.*"
+                         + re.escape(figure.minus(f"{ours - printed:+.3f}")) + "</td>")
         self.assertIn("table_2", page.figures)
-        self.assertIsNone(cards.paper_row(Run(ltd(), None)))  # 10 s are not the paper's run
+        self.assertIn("Circles: the paper's values", page.caption("speeds"))
+        self.assertNotIn("Not compared with the paper", page.text)
+        self.assertNotIn("table_1", self.page(ltd()).figures)  # 10 s are not the paper's run
+
+    def test_a_changed_run_is_not_the_papers(self):
+        for change, reason in (("initial_speed_kmh=60", "initial_speed_kmh is 60, there 80"),
+                               ("commands[0].kind=release", "commands[0].kind is release, there emergency"),
+                               ("track=down_half_percent", "track.name is down_half_percent, there level")):
+            name = "changed_" + change.partition("=")[0].partition("[")[0]
+            page = self.page(simulated(name, "emergency", "--model", "ltd", "--set", change, "--set",
+                                       "exchange_interval_s=0.001"))
+            self.assertIn(f"Not compared with the paper&#39;s emergency: {reason}.", page.text)
+            self.assertNotIn("table_1", page.figures)
+            self.assertNotIn("Circles", page.caption("speeds"))
 
     def test_groups_by_scenario(self):
         page = self.page(ltd(), two_d(), six_wagons(), "--by-scenario")
@@ -222,6 +271,20 @@ class ReportTest(unittest.TestCase):
         with self.assertRaises(figure.LeftOut):
             wave.fit(time_s, 0.0 * pressure_pa, distance_m)
 
+    def test_a_wave_that_began_before_the_recording(self):
+        def begun(at_s):
+            run = Run(ltd(), None)
+            for table in ("state", "pressures"):
+                old = getattr(run.recording, table)
+                setattr(run.recording, table, Table(old.rows[old.time_s > at_s]))
+            return run
+        with self.assertRaisesRegex(figure.LeftOut, "242 of 242 vehicles had begun to move before the recording"):
+            wave.application(begun(8.5))
+        part = wave.application(begun(3.0))  # under way: what is still to come has the same speed
+        self.assert_speed(250.0, part)
+        self.assertEqual([122, 242], [vehicle for vehicle, _ in part.sources()])  # the first was not seen to begin
+        self.assertTrue(numpy.isnan(part.arrival_s[0]))
+
     # Slides, the dip, a vehicle
 
     def test_wheel_slides(self):
@@ -247,7 +310,8 @@ class ReportTest(unittest.TestCase):
         page = self.page(simulated("dip", "dip"))
         caption = page.caption("dip")
         self.assertIn("±15.10", caption)  # H sin(2 pi l / L) / (2 l), docs/validation.md
-        low, high = map(float, re.search(r"pitches by (-[\d.]+) \.\.\. \+([\d.]+) mrad", caption).groups())
+        low, high = map(float, re.search(r"pitches by (-[\d.]+) \.\.\. \+([\d.]+) mrad",
+                                         caption.replace("\u2212", "-")).groups())
         self.assertAlmostEqual(15.10, -low, delta=0.2)
         self.assertAlmostEqual(15.10, high, delta=0.2)
         for title in ("Largest coupler forces along the train", "Brake wave", "Acceleration, whole train"):
@@ -306,7 +370,7 @@ class ReportTest(unittest.TestCase):
         self.assertAlmostEqual(summary["final_speed_kmh"]["mean"], float(recorded["final_speed_kmh.mean"]), places=7)
         self.assertEqual(2.0, float(recorded["simulated_s"]))
         self.assertEqual(2, page.text.count("<dd>yes</dd>"))
-        self.assertIn("+0.0000 km/h at the end", page.caption("speeds"))
+        self.assertIn("+0.0000 km/h at the last common instant", page.caption("speeds"))
         self.assertEqual(["A wagon over the dip"], list(page.left_out))
 
     def test_another_namespace(self):
@@ -329,7 +393,8 @@ class ReportTest(unittest.TestCase):
         self.assertIn("EnergyLedger", page.left_out["Energy ledger"])
         self.assertIn("no TrainState", page.left_out["Brake wave"])
         beside_a_whole_one = self.page(six_wagons(), bag)
-        self.assertIn("Not shown, because the bag has no TrainState", beside_a_whole_one.caption("speeds"))
+        self.assertIn("Not shown: LTD: the recording has no topic of the type train_brake_msgs/TrainState.",
+                      beside_a_whole_one.caption("speeds"))
 
     def test_a_run_of_one_record(self):
         bag = rewritten(six_wagons() / "train.bag", self.here / "first.bag",
@@ -364,7 +429,34 @@ class ReportTest(unittest.TestCase):
     def test_missing_records_are_counted(self):
         bag = rewritten(six_wagons() / "train.bag", self.here / "gap.bag",
                         lambda topic, raw, stamp: None if 0.055 < stamp.to_sec() < 0.085 else (topic, raw, stamp))
-        self.assertEqual(["3 records are missing from the bag, the first after 0.05 s."], Run(bag, None).notes)
+        run = Run(bag, None)
+        self.assertEqual(["3 records are missing from the bag, the first after 0.05 s.",
+                          "INCOMPLETE: only a part of the run was recorded."], run.notes)
+        self.assertFalse(run.complete)
+        self.assertIn("of the recorded part", {fact.more for fact in cards.facts_of(run) if fact.name == "distance"})
+
+    def test_a_bag_begun_late_is_a_part(self):
+        def late(topic, raw, stamp):
+            return (topic, raw, stamp) if stamp.to_sec() > 4.0 or "scenario" in topic else None
+        run = Run(rewritten(two_d() / "train.bag", self.here / "late.bag", late), None)
+        self.assertFalse(run.complete)
+        self.assertIn("INCOMPLETE: only a part of the run was recorded.", run.notes)
+        of_part = {fact.name: fact.more for fact in cards.facts_of(run) if "of the recorded part" in fact.more}
+        self.assertEqual({"distance", "largest tension", "largest compression"}, set(of_part))
+
+    def test_pictures_leave_missing_records_blank(self):
+        """A column is a stretch of time, whatever is missing before it."""
+        time_s = numpy.concatenate([numpy.arange(0.0, 2.0, 0.01), numpy.arange(8.0, 10.0, 0.01)])
+        picture, begin_s, end_s = series.decimate(time_s, time_s[:, None] * [1.0, -1.0], 100)
+        middle_s = begin_s + (numpy.arange(100) + 0.5) / 100 * (end_s - begin_s)
+        known = numpy.isfinite(picture[0])
+        self.assertTrue((known == ((middle_s < 2.0) | (middle_s > 7.98))).all())
+        numpy.testing.assert_allclose(picture[0, known], middle_s[known], atol=0.06)  # half a column and an interval
+        numpy.testing.assert_array_equal(-picture[0, known], picture[1, known])
+        bag = rewritten(two_d() / "train.bag", self.here / "gap.bag",
+                        lambda topic, raw, stamp: None if 3.0 < stamp.to_sec() < 6.0 else (topic, raw, stamp))
+        self.assertIn("Grey: no records.", self.page(bag).caption("acceleration_picture"))
+        self.assertNotIn("Grey", self.page(two_d()).caption("acceleration_picture"))
 
     # What cannot be read
 
@@ -409,6 +501,10 @@ class ReportTest(unittest.TestCase):
                         new.write(name, raw, stamp, raw=True, connection_header=header)
                 self.assert_refused(bag, "defines", kind if topic != "/x" else "train_brake_msgs/", "the version that wrote")
                 self.assertFalse(sign.exists())
+
+    def test_a_zero_has_no_minus(self):
+        self.assertEqual(["0.000", "\u22120.001", "+0.0", "\u22122.5e\u221210", "0.0 kN"],
+                         list(map(figure.minus, ["-0.000", "-0.001", "+0.0", "-2.5e-10", "-0.0 kN"])))
 
     def test_our_own_errors_are_not_called_damage(self):
         with mock.patch.object(report_bag, "_table", side_effect=ZeroDivisionError), self.assertRaises(ZeroDivisionError):
@@ -493,7 +589,7 @@ class ReportTest(unittest.TestCase):
         shown, console = self.browse(text.replace("</body>", press))
         self.assertEqual([], console)
         saved = re.search(r'<pre id="fetched">(.*?)</pre>', shown).group(1).split()
-        names = re.findall(r'<figure id="([^"]+)">\s*<h3>[^<]*</h3>\s*<svg', text)
+        names = re.findall(r'<figure id="([^"]+)">\s*<h3>[^<]*</h3>\s*<div class="scroll"><svg', text)
         self.assertEqual(sorted(f"{name}.{ending}" for name in names for ending in ("svg", "png")), sorted(saved))
 
         _, console = self.browse(text.replace("</body>", '<img src="http://localhost:9/a.png"></body>'))

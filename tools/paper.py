@@ -7,17 +7,20 @@ Prints Table 1 of the paper (speeds at the last step) and the largest coupler fo
 into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
 """
 
-import csv
 import json
 import pathlib
 import subprocess
 import sys
 
+import numpy
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "src" / "train_brake" / "src"), str(ROOT / "devel" / "lib" / "python3" / "dist-packages")]
 
 from train_brake_report.command import main as report  # noqa: E402
+from train_brake_report.figures.couplers import compare_largest  # noqa: E402
 from train_brake_report.paper import COUPLER, COUPLER_TENSION_KN, MODELS, SCENARIOS, SPEED_KMH  # noqa: E402
+from train_brake_report.run import read_couplers  # noqa: E402
 
 
 def run(train_sim, scenario, model, out):
@@ -27,8 +30,7 @@ def run(train_sim, scenario, model, out):
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)} ended with exit code {done.returncode}:\n{done.stderr}")
     summary = json.loads((out / "summary.json").read_text())
-    with open(out / "couplers.csv", newline="") as table:
-        summary["couplers"] = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(table)]
+    summary["couplers"] = read_couplers(out / "couplers.csv")
     print(f"  {scenario:<14}{model:<16}{summary['wall_s']:7.2f} s wall for {summary['simulated_s']:g} s", flush=True)
     return summary
 
@@ -41,7 +43,7 @@ def print_table_1(results):
         for scenario in SCENARIOS:
             ours = results[scenario, model]["final_speed_kmh"]["mean"]
             paper = SPEED_KMH[model, scenario]
-            row += f"{ours:10.3f}{paper:8.2f}{ours - paper:+8.3f}  "
+            row += f"{ours:10.3f}{paper:8.2f}{round(ours - paper, 3) + 0.0:+8.3f}  "
         print(row)
 
 
@@ -55,17 +57,16 @@ def print_figure_10(results):
             for model in ("ltd", "2d"):
                 extreme = results[scenario, model][key]
                 row += f"{extreme['value'] / 1e3:12.1f} @{extreme['connection']:>4d}"
-        difference = [(b[side] - a[side], int(a["connection"]))
-                      for side in ("max_tension_n", "max_compression_n")
-                      for a, b in zip(results[scenario, "ltd"]["couplers"], results[scenario, "2d"]["couplers"])]
-        mean = sum(abs(d) for d, _ in difference) / len(difference)
-        largest, where = max(difference, key=lambda d: abs(d[0]))
+        mean, largest, where = compare_largest(*(
+            numpy.array([results[scenario, model]["couplers"][side] for side in ("max_tension_n", "max_compression_n")])
+            for model in ("ltd", "2d")))
         row += f"{mean / 1e3:12.2f}{largest / 1e3:+10.1f} @{where:>4d}"
         print(row)
     print(f"\nCoupler {COUPLER}, emergency, largest tension [kN]:")
     for model in ("ltd", "2d"):
-        extreme = results["emergency", model]["couplers"][COUPLER - 1]
-        print(f"  {model:<6}{extreme['max_tension_n'] / 1e3:8.1f} at {extreme['max_tension_time_s']:.2f} s"
+        largest_n, time_s = (results["emergency", model]["couplers"][name][COUPLER - 1]
+                             for name in ("max_tension_n", "max_tension_time_s"))
+        print(f"  {model:<6}{largest_n / 1e3:8.1f} at {time_s:.2f} s"
               f"   (the paper: {COUPLER_TENSION_KN[model]:g} near 35 s)")
 
 

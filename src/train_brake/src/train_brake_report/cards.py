@@ -1,12 +1,12 @@
 """The numbers of a run that are read first, and the paper's tables."""
 
 import dataclasses
-from typing import List, Optional
+from typing import Iterable, List, Optional
 
 import numpy
 
 from train_brake_report import paper
-from train_brake_report.figure import Figure, Table
+from train_brake_report.figure import Figure, Table, minus
 from train_brake_report.run import MODEL_NAMES, Run
 
 
@@ -41,14 +41,15 @@ def _extreme(facts: List[Fact], run: Run, key: str, name: str, sign: int) -> Non
         extreme = run.summary[key]
         if extreme is not None:
             facts.append(Fact(f"{key}.value", name, extreme["value"],
-                              f"{1e-3 * extreme['value']:.1f} kN",
+                              minus(f"{1e-3 * extreme['value']:.1f} kN"),
                               f"coupler {extreme['connection']}, {extreme['time_s']:.2f} s"))
     elif run.recording.forces is not None and run.vehicles > 1:
         forces = sign * run.recording.forces["coupler_force_n"]
         record, connection = numpy.unravel_index(forces.argmax(), forces.shape)
         value = float(sign * forces[record, connection])
-        facts.append(Fact(f"{key}.value", name, value, f"{1e-3 * value:.1f} kN",
-                          f"coupler {connection + 1}, {run.recording.forces.time_s[record]:.2f} s; of the records"))
+        facts.append(Fact(f"{key}.value", name, value, minus(f"{1e-3 * value:.1f} kN"),
+                          f"coupler {connection + 1}, {run.recording.forces.time_s[record]:.2f} s; of the "
+                          + ("records" if run.has_all_records else "recorded part")))
 
 
 def facts_of(run: Run) -> List[Fact]:
@@ -60,23 +61,23 @@ def facts_of(run: Run) -> List[Fact]:
     if run.recording.state is not None or summary:
         final = summary.get("final_speed_kmh", {}).get("mean")
         final = float(run.mean_speed_kmh[-1]) if final is None else final
-        facts.append(Fact("final_speed_kmh.mean", "speed at the end", final, f"{final:.3f} km/h"))
+        facts.append(Fact("final_speed_kmh.mean", "speed at the end", final, minus(f"{final:.3f} km/h")))
     if summary.get("stopped"):
         facts.append(Fact("stop_time_s", "stopped after", summary["stop_time_s"],
                           f"{summary['stop_time_s']:.2f} s", f"{summary['stop_distance_m']:.1f} m"))
     elif run.recording.state is not None:
         state = run.recording.state
         way_m = float((state["position_m"][-1] - state["position_m"][0]).mean())
-        facts.append(Fact("", "distance", way_m, f"{way_m:.0f} m"))
+        facts.append(Fact("", "distance", way_m, f"{way_m:.0f} m", "" if run.has_all_records else "of the recorded part"))
     _extreme(facts, run, "max_tension_n", "largest tension", 1)
     _extreme(facts, run, "max_compression_n", "largest compression", -1)
-    if "energy" in summary and summary["energy"]["initial_j"]:
+    if "energy" in summary and summary["energy"]["initial_j"] > 0.0:
         share = summary["energy"]["residual_j"] / summary["energy"]["initial_j"]
-        facts.append(Fact("energy.residual_j", "energy residual", summary["energy"]["residual_j"], f"{share:+.1e}",
+        facts.append(Fact("energy.residual_j", "energy residual", summary["energy"]["residual_j"], minus(f"{share:+.1e}"),
                           "of the initial energy"))
     if "real_time_factor" in summary:
         facts.append(Fact("real_time_factor", "times real time", summary["real_time_factor"],
-                          f"{summary['real_time_factor']:.1f}", f"{summary['wall_s']:.1f} s"))
+                          f"{summary['real_time_factor']:.1f}", f"{summary['wall_s']:.1f} s of wall time"))
     return facts
 
 
@@ -99,13 +100,16 @@ class PaperRow:
 
 
 def paper_row(run: Run) -> Optional[PaperRow]:
-    if not paper.is_of_paper(run) or run.recording.state is None:
+    if not run.is_of_paper or run.recording.state is None:
         return None
     return PaperRow(run.scenario, run.model, float(run.mean_speed_kmh[-1]), (run.summary or {}).get("wall_s"), run.end_s)
 
 
-BY_NAME = ("Runs count as the paper's by scenario, model, number of vehicles and duration; other values may have been "
-           "changed.")
+def calibrated(models: Iterable[str]) -> str:
+    """A sentence on what the values of these models are beside the paper's."""
+    if "ltd-no-inertia" not in models:
+        return "The values here are predictions (docs/validation.md)."
+    return "LTD without rotational inertia was calibrated on them; other models are predictions (docs/validation.md)."
 
 
 def table_1(rows: List[PaperRow]) -> Figure:
@@ -113,10 +117,9 @@ def table_1(rows: List[PaperRow]) -> Figure:
     for row in sorted(rows, key=lambda r: (paper.MODELS.index(r.model), paper.SCENARIOS.index(r.scenario))):
         printed = paper.SPEED_KMH[row.model, row.scenario]
         texts.append([MODEL_NAMES[row.model], row.scenario, f"{printed:.2f}", f"{row.speed_kmh:.3f}",
-                      f"{row.speed_kmh - printed:+.3f}", "calibrated" if row.model == "ltd-no-inertia" else "predicted"])
+                      minus(f"{row.speed_kmh - printed:+.3f}"), "calibrated" if row.model == "ltd-no-inertia" else "predicted"])
     return Figure("table_1", "Table 1: speed at the last step",
-                  "Mean speed of the train's momentum. One row of the paper's table, LTD without rotational inertia, was "
-                  f"calibrated on; the others are predictions, their bias is discussed in docs/validation.md. {BY_NAME}",
+                  "Mean speed of the train's momentum, beside the paper's values. " + calibrated({row.model for row in rows}),
                   table=Table(["model", "scenario", "paper [km/h]", "here [km/h]", "difference [km/h]", ""], texts))
 
 

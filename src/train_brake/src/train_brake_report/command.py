@@ -87,14 +87,17 @@ def _anchor(text: str) -> str:
 class Report:
     """Collects the page group by group, so that only the runs of one group are in memory at a time."""
 
-    def __init__(self, options: argparse.Namespace):
+    def __init__(self, options: argparse.Namespace, train_sim: List[str]):
         self.options = options
+        self.train_sim = train_sim
         self.cards: List[cards.Card] = []
         self.sections: List[page.Section] = []
         self.rows: List[cards.PaperRow] = []
 
     def add_runs(self, name: str, given: List[pathlib.Path]) -> None:
         runs = _read(given, self.options.wagon)
+        for run in runs:
+            paper.judge(run, self.train_sim)
         group = Group(_anchor(name) if self.options.by_scenario else "", runs,
                       self.options.wagon or min(paper.WAGON, runs[0].vehicles), self.options.coupler)
         self.sections.append(page.Section(name or "Figures", f"section_{_anchor(name)}", contents.of_runs(group)))
@@ -109,8 +112,8 @@ class Report:
             self.sections.append(page.Section("Tables of the paper", "tables", [cards.table_1(self.rows),
                                                                                cards.table_2(self.rows)]))
 
-    def add_vehicle(self, train_sim: List[str]) -> None:
-        self.sections.append(page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, train_sim)))
+    def add_vehicle(self) -> None:
+        self.sections.append(page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, self.train_sim)))
 
     def html(self) -> str:
         title = "Train braking: " + (self.cards[0].name if len(self.cards) == 1 else f"{len(self.cards)} runs" if self.cards
@@ -129,12 +132,12 @@ def _default_out(runs: List[pathlib.Path]) -> pathlib.Path:
 def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.Path:
     out = options.out or _default_out(options.runs)
     with style.applied():
-        report = Report(options)
+        report = Report(options, train_sim)
         for name, given in _grouped(options.runs, options.by_scenario).items():
             report.add_runs(name, given)
         report.add_tables()
         if options.vehicle:
-            report.add_vehicle(train_sim)
+            report.add_vehicle()
         html = report.html()
         if options.figures:
             options.figures.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,12 @@ from train_brake_report import style
 PNG_DPI = 120
 
 
+def minus(number: str) -> str:
+    """A printed number as it stands in a text: with a minus instead of hyphens, and none before a zero."""
+    without = re.sub(r"^-(?=[0.]+(?![\d.e]))", "", number)
+    return without.replace("-", "\u2212")
+
+
 class LeftOut(Exception):
     """Why a figure is not there, as a sentence for the page."""
 

@@ -1,14 +1,21 @@
 """Runs that are drawn together, and what the user chose to see of them."""
 
 import dataclasses
-from typing import List, Optional
+from typing import Callable, List, Optional, Tuple
 
 from train_brake_report import style
 from train_brake_report.figure import LeftOut
 from train_brake_report.run import Run
+from train_brake_report.series import common_rows
 
 # Names for the page of what figures need.
 TABLES = {"state": "TrainState", "forces": "InTrainForces", "pressures": "BrakePressures", "wagon": "WagonState"}
+
+
+def lacks(run: Run, table: str) -> str:
+    """Why the run cannot be drawn from this table; empty if it can."""
+    return "" if getattr(run.recording, table) is not None else (
+        f"the recording has no topic of the type train_brake_msgs/{TABLES[table]}")
 
 
 @dataclasses.dataclass
@@ -18,12 +25,20 @@ class Group:
     wagon: int
     coupler: Optional[int]  # None: the paper's, or the one with the largest force
 
-    def having(self, table: str) -> List[Run]:
-        """The runs whose bag has this table; LeftOut if none has."""
-        runs = [run for run in self.runs if getattr(run.recording, table) is not None]
+    def drawable(self, why_not: Callable[[Run], str]) -> Tuple[List[Run], str]:
+        """(the runs of which why_not has nothing to say, a sentence on the others); LeftOut if none can be drawn."""
+        reasons = {run: why_not(run) for run in self.runs}
+        runs = [run for run, reason in reasons.items() if not reason]
         if not runs:
-            raise LeftOut(f"The recording has no topic of the type train_brake_msgs/{TABLES[table]}.")
-        return runs
+            same = len(set(reasons.values())) == 1
+            text = reasons[self.runs[0]] if same else "; ".join(f"{r.label}: {reason}" for r, reason in reasons.items())
+            raise LeftOut(f"{text[0].upper()}{text[1:]}.")
+        others = "; ".join(f"{run.label}: {reason}" for run, reason in reasons.items() if reason)
+        return runs, f" Not shown: {others}." if others else ""
+
+    def having(self, table: str) -> Tuple[List[Run], str]:
+        """The runs whose bag has this table, as drawable."""
+        return self.drawable(lambda run: lacks(run, table))
 
     def line(self, run: Run) -> dict:
         """How the run is drawn in all figures."""
@@ -32,18 +47,24 @@ class Group:
     def colour(self, run: Run) -> str:
         return self.line(run)["color"]
 
-    def comparable(self, runs: List[Run]) -> List[Run]:
-        """Those of runs[1:] with as many vehicles as the first, to take differences to it."""
-        return [run for run in runs[1:] if run.vehicles == runs[0].vehicles]
+    @staticmethod
+    def comparable(runs: List[Run], table: str, same_instants: bool = True, same_train: bool = True) -> Tuple[List[Run], str]:
+        """(those of runs[1:] of which differences to the first can be taken, a sentence on the others)"""
+        first, found, others = runs[0], [], []
+        for run in runs[1:]:
+            if same_train and run.vehicles != first.vehicles:
+                others.append(f"{run.label} has {run.vehicles} vehicle(s), {first.label} {first.vehicles}")
+            elif same_instants and not len(common_rows(getattr(first.recording, table).time_s,
+                                                       getattr(run.recording, table).time_s)[0]):
+                others.append(f"{run.label} and {first.label} have no instant in common")
+            else:
+                found.append(run)
+        return found, f" No difference: {'; '.join(others)}." if others else ""
 
     @staticmethod
     def difference(run: Run, first: Run) -> str:
         return f"{run.label} \u2212 {first.label}"
 
-    def without(self, runs: List[Run], table: str) -> str:
-        """A sentence on the runs that a figure cannot show; empty if there are none."""
-        missing = [run.label for run in self.runs if run not in runs]
-        return f" Not shown, because the bag has no {TABLES[table]}: {', '.join(missing)}." if missing else ""
-
     def commands(self) -> list:
-        return self.runs[0].commands
+        """Those that all runs have."""
+        return [c for c in self.runs[0].commands if all(c in run.commands for run in self.runs)]

@@ -31,7 +31,7 @@ class Section:
 
 
 def _is_number(text: str) -> bool:
-    return re.fullmatch(r"[-+]?[\d.]*", text) is not None
+    return re.fullmatch(r"[-+\u2212]?[\d.]*", text) is not None
 
 
 def render(title: str, cards: List[Card], sections: List[Section], made: str) -> str:

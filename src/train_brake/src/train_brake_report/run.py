@@ -1,9 +1,10 @@
 """A run of the train: its bag, and the config.yaml and summary.json of the same run where there are any."""
 
+import csv
 import functools
 import json
 import pathlib
-from typing import Callable, List, Optional
+from typing import Callable, Dict, List, Optional
 
 import numpy
 import yaml
@@ -44,6 +45,17 @@ def _load_yaml(text: str) -> dict:
     return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
+def read_couplers(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
+    """The columns of a run's couplers.csv: largest forces of all exchanges, and when, for each connection."""
+    with open(file, newline="") as text:
+        rows = list(csv.DictReader(text))
+    try:
+        return {name: numpy.array([float(row[name]) for row in rows])
+                for name in ("max_tension_n", "max_tension_time_s", "max_compression_n", "max_compression_time_s")}
+    except (KeyError, TypeError, ValueError) as error:
+        raise BagError(f"{file} is damaged: {type(error).__name__}: {error}") from None
+
+
 class Run:
     """One run, read. What neither the bag nor its folder knows is None."""
 
@@ -53,6 +65,7 @@ class Run:
         self.recording: Recording = read_bag(self.bag, wagon)
         self.notes: List[str] = []
         self.label = ""  # set by label_runs
+        self.is_of_paper = False  # set by paper.judge
         self._find_companions()
         self._judge_records()
 
@@ -67,6 +80,7 @@ class Run:
                               "end of the bag is missing.")
         self.summary = summary if belong else None
         self.config_file = folder / "config.yaml" if belong and (folder / "config.yaml").exists() else None
+        self.couplers_file = folder / "couplers.csv" if belong and (folder / "couplers.csv").exists() else None
         self.config_text = self.recording.scenario or (_text(self.config_file) if self.config_file else "")
         self.config = _parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, _load_yaml) or None
 
@@ -74,14 +88,18 @@ class Run:
         table = self.records
         intervals = numpy.diff(table.time_s)
         usual = numpy.median(intervals) if len(intervals) else 0.0
-        if table.time_s[0] > 1.5 * usual:
+        begins_late = table.time_s[0] > 1.5 * usual
+        if begins_late:
             self.notes.append(f"The bag begins at {table.time_s[0]:.2f} s.")
         gaps = intervals > 1.5 * usual
+        self.has_all_records = not begins_late and not gaps.any()  # up to its end
         if usual > 0.0 and gaps.any():
             missing = int(numpy.round(intervals[gaps] / usual - 1).sum())
             self.notes.append(f"{missing} records are missing from the bag, the first after "
                               f"{table.time_s[:-1][gaps][0]:.2f} s.")
-        if self.complete is False:
+        if self.complete is False and self.reached_its_end is not False:
+            self.notes.append("INCOMPLETE: only a part of the run was recorded.")
+        elif self.complete is False:
             self.notes.append(f"INCOMPLETE: the run ended at {self.end_s:.2f} s"
                               + (f" of {self.config['duration_s']:g} s" if self.config else "")
                               + (f", because {self.summary['fault']}." if self.fault else ", stopped by its user or cut off."))
@@ -97,13 +115,20 @@ class Run:
         return float(self.records.time_s[-1])
 
     @property
-    def complete(self) -> Optional[bool]:
+    def reached_its_end(self) -> Optional[bool]:
         """None: unknown, a bag alone does not tell."""
         if self.summary is not None:
             return bool(self.summary.get("complete"))
         if self.config is not None:
             return self.end_s >= self.config["duration_s"] - 1e-6
         return None
+
+    @property
+    def complete(self) -> Optional[bool]:
+        """With a summary the numbers are those of the whole run, whatever the bag lacks. None: unknown."""
+        if self.summary is None and not self.has_all_records:
+            return False
+        return self.reached_its_end
 
     @property
     def fault(self) -> Optional[str]:
@@ -149,6 +174,15 @@ class Run:
                     + 2 * v["bogie_frame"]["mass_kg"] + 4 * v["wheelset"]["mass_kg"])
             masses += [mass] * item["count"]
         return numpy.array(masses)
+
+    @functools.cached_property
+    def largest_coupler_forces_n(self) -> numpy.ndarray:
+        """[0: tension, 1: compression][connection]: of all exchanges if the run wrote couplers.csv, else of the records."""
+        if self.couplers_file is None:
+            forces = self.recording.forces["coupler_force_n"]
+            return numpy.array([numpy.maximum(forces.max(axis=0), 0.0), numpy.minimum(forces.min(axis=0), 0.0)])
+        couplers = read_couplers(self.couplers_file)
+        return numpy.array([couplers["max_tension_n"], couplers["max_compression_n"]])
 
     @functools.cached_property
     def mean_speed_kmh(self) -> numpy.ndarray:

@@ -11,12 +11,17 @@ def common_rows(time_a_s: numpy.ndarray, time_b_s: numpy.ndarray) -> Tuple[numpy
     return a, b
 
 
-def decimate(values: numpy.ndarray, columns: int) -> numpy.ndarray:
-    """[record, vehicle] to [vehicle, column]: of the records of a column the value of the largest size, so that no peak
-    is lost. Columns share the records evenly; with fewer records than columns each record is a column."""
-    records = len(values)
-    columns = min(columns, records)
-    edges = numpy.linspace(0, records, columns + 1).astype(int)
-    largest = numpy.maximum.reduceat(values, edges[:-1])
-    smallest = numpy.minimum.reduceat(values, edges[:-1])
-    return numpy.where(largest >= -smallest, largest, smallest).T
+def decimate(time_s: numpy.ndarray, values: numpy.ndarray, columns: int) -> Tuple[numpy.ndarray, float, float]:
+    """([vehicle, column], begin, end) of values [record, vehicle]: of the records in a column's time the value of the
+    largest size, so that no peak is lost; nan without any. Columns share the time between begin and end evenly, at most
+    so many that each has one record where none is missing."""
+    interval_s = numpy.median(numpy.diff(time_s))
+    columns = min(columns, int(round((time_s[-1] - time_s[0]) / interval_s)) + 1)
+    begin_s, end_s = time_s[0] - 0.5 * interval_s, time_s[-1] + 0.5 * interval_s
+    column = numpy.floor((time_s - begin_s) / (end_s - begin_s) * columns).astype(int)
+    filled, first = numpy.unique(column, return_index=True)
+    largest = numpy.maximum.reduceat(values, first)
+    smallest = numpy.minimum.reduceat(values, first)
+    picture = numpy.full((columns, values.shape[1]), numpy.nan)
+    picture[filled] = numpy.where(largest >= -smallest, largest, smallest)
+    return picture.T, begin_s, end_s

@@ -19,6 +19,8 @@ CSS_NAMES = {BLUE: "blue", VERMILLION: "vermillion", GREEN: "green", PURPLE: "pu
 DIVERGING = LinearSegmentedColormap.from_list("tension_compression",
                                               ["#00304b", BLUE, "#9fd0ea", "#f7f7f7", "#f6b98c", VERMILLION, "#5f2a00"])
 SEQUENTIAL = LinearSegmentedColormap.from_list("none_to_much", ["#f7f7f7", "#9fd0ea", BLUE, "#00304b"])
+for colours in (DIVERGING, SEQUENTIAL):
+    colours.set_bad("#9aa3ad")  # where nothing is known
 
 WIDTH_IN = 10.0
 
@@ -43,7 +45,7 @@ def applied():
 
 def run_line(number: int, runs: int) -> dict:
     """Of the run with this number, from 0. The first is broad: where runs agree, the others are seen upon it."""
-    width = 2.0 if runs == 1 else 4.0 if number == 0 else 1.5
+    width = 2.0 if runs == 1 else 5.0 if number == 0 else 1.8
     return {"color": COLOURS[number % len(COLOURS)], "linewidth": width, "linestyle": "-" if number < 2 else (0, (4, 2))}
 
 
@@ -80,6 +82,6 @@ def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = Fa
         axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
         if named:
             kind = {"emergency": "emergency", "release": "release"}.get(
-                command["kind"], f"apply {command.get('reduction_kpa', 0):g} kPa")
+                command["kind"], f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa")
             axes.annotate(kind, (command["time_s"], y), (4, offset), xycoords=("data", "axes fraction"),
                           textcoords="offset points", va=align, fontsize=9.5, color=MUTED)

@@ -13,7 +13,7 @@
 """
 
 import dataclasses
-from typing import List, Optional, Tuple
+from typing import Callable, List, Optional, Tuple
 
 import numpy
 
@@ -22,6 +22,8 @@ from train_brake_report.run import Run
 
 MOVED_PA = 100.0  # less is the rounding of a standing pressure
 FIRST, LAST = 0.005, 0.05  # of the rise: the samples that the arrival is found from
+FIRST_RECORDS = 3  # what begins to fall within them may have begun before
+SYSTEMATIC = 2e-4  # of the speed: the rise is curved, and that shifts the arrivals (measured on the paper's scenarios)
 STEADY = 0.1  # how far the slowness between two neighbours of a branch may be from the typical one, as a share
 
 
@@ -43,9 +45,11 @@ class Wave:
     residual_s: float  # root of the mean square
 
     def sources(self) -> List[Tuple[int, float]]:
-        """Vehicles, from 1, where waves begin, and when."""
-        starts = [b.first if b.sign > 0 else b.last for b in self.branches]
-        return [(i + 1, float(self.arrival_s[i])) for i in sorted(set(starts))]
+        """Vehicles, from 1, where waves are seen to begin, and when: before both of their neighbours."""
+        starts = {b.first if b.sign > 0 else b.last for b in self.branches}
+        around = numpy.concatenate([[numpy.inf], self.arrival_s, [numpy.inf]])  # of vehicle i: i and i + 2
+        return [(i + 1, float(self.arrival_s[i])) for i in sorted(starts)
+                if self.arrival_s[i] <= around[i] and self.arrival_s[i] <= around[i + 2]]
 
 
 def arrivals(time_s: numpy.ndarray, pressure_pa: numpy.ndarray) -> numpy.ndarray:
@@ -67,6 +71,8 @@ def arrivals(time_s: numpy.ndarray, pressure_pa: numpy.ndarray) -> numpy.ndarray
 def _branches(arrival_s: numpy.ndarray, distance_m: numpy.ndarray) -> List[Tuple[int, int, int]]:
     """(first, last, sign) of each stretch of at least three vehicles, its end left out."""
     slowness = numpy.diff(arrival_s) / numpy.diff(distance_m)
+    if not numpy.isfinite(slowness).any():
+        return []
     typical = numpy.nanmedian(numpy.abs(slowness))
     steady = numpy.abs(numpy.abs(slowness) - typical) < STEADY * typical
     kind = numpy.where(steady, numpy.sign(slowness), 0)
@@ -76,11 +82,17 @@ def _branches(arrival_s: numpy.ndarray, distance_m: numpy.ndarray) -> List[Tuple
             for a, b in stretches if kind[a] != 0 and b - a >= 3]
 
 
-def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.ndarray) -> Wave:
-    """Raises LeftOut if no wave is to be seen."""
+def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.ndarray,
+        moving: Callable[[numpy.ndarray], numpy.ndarray] = lambda arrival_s: numpy.zeros(len(arrival_s), bool)) -> Wave:
+    """Raises LeftOut if no wave is to be seen. moving: at which vehicles, by their arrivals, it had begun before."""
     if len(distance_m) < 4:
         raise LeftOut("A wave is seen on a train of four vehicles or more.")
     arrival = arrivals(time_s, pressure_pa)
+    before = moving(arrival)
+    arrival[before] = numpy.nan
+    if before.any() and numpy.isfinite(arrival).sum() < 4:
+        raise LeftOut(f"The pressures of {before.sum()} of {len(before)} vehicles had begun to move before the recording: "
+                      "when the wave reached them is not known.")
     if numpy.isfinite(arrival).sum() < 4:
         raise LeftOut("Fewer than four vehicles were seen to begin to brake or release.")
     stretches = _branches(arrival, distance_m)
@@ -114,7 +126,8 @@ def _distances(run: Run) -> numpy.ndarray:
 def application(run: Run) -> Wave:
     """The first rise of the pressures."""
     table = run.recording.pressures
-    return fit(table.time_s, table["cylinder_pressure_pa"].astype(float), _distances(run))
+    pressure = table["cylinder_pressure_pa"].astype(float)
+    return fit(table.time_s, pressure, _distances(run), lambda _: pressure[0] > MOVED_PA)
 
 
 def release(run: Run) -> Wave:
@@ -122,7 +135,8 @@ def release(run: Run) -> Wave:
     table = run.recording.pressures
     pressure = table["cylinder_pressure_pa"].astype(float)
     fall = numpy.maximum.accumulate(pressure, axis=0) - pressure
-    return fit(table.time_s, fall, _distances(run))
+    end_s = table.time_s[min(FIRST_RECORDS, len(table)) - 1]
+    return fit(table.time_s, fall, _distances(run), lambda arrival_s: arrival_s < end_s)
 
 
 def configured_speed_mps(run: Run, is_release: bool) -> Optional[float]:

@@ -4,9 +4,9 @@ import numpy
 from matplotlib.ticker import MaxNLocator
 
 from train_brake_report import paper, style
-from train_brake_report.figure import Figure, LeftOut, panels_with_differences
-from train_brake_report.group import Group
-from train_brake_report.run import Run
+from train_brake_report.figure import Figure, minus, panels_with_differences
+from train_brake_report.group import Group, lacks
+from train_brake_report.run import MODEL_NAMES, Run
 from train_brake_report.series import common_rows
 
 KN = 1e-3
@@ -16,22 +16,27 @@ def _forces_kn(run: Run) -> numpy.ndarray:
     return KN * run.recording.forces["coupler_force_n"]
 
 
-def _runs_with_couplers(group: Group) -> list:
-    runs = group.having("forces")
-    if runs[0].vehicles < 2:
-        raise LeftOut("A single vehicle has no coupler.")
-    return runs
+def _why_not(run: Run) -> str:
+    return lacks(run, "forces") or ("a single vehicle has no coupler" if run.vehicles < 2 else "")
+
+
+def compare_largest(ours: numpy.ndarray, others: numpy.ndarray) -> tuple:
+    """(mean size, largest with its sign, its connection from 1) of the difference of two runs' largest forces
+    [tension, compression][connection]."""
+    difference = others - ours
+    side, at = numpy.unravel_index(numpy.abs(difference).argmax(), difference.shape)
+    return numpy.abs(difference).mean(), difference[side, at], int(at) + 1
 
 
 def draw_largest(group: Group) -> Figure:
-    runs = _runs_with_couplers(group)
-    first, others = runs[0], group.comparable(runs)
+    runs, not_shown = group.drawable(_why_not)
+    others, not_compared = group.comparable(runs, "forces", same_instants=False)
+    first = runs[0]
     canvas, axes, below = panels_with_differences(4.6, [group.difference(run, first) for run in others])
     largest = {}
     for run in runs:
-        forces = _forces_kn(run)
-        largest[run] = numpy.array([numpy.maximum(forces.max(axis=0), 0.0), numpy.minimum(forces.min(axis=0), 0.0)])
-        connections = numpy.arange(1, forces.shape[1] + 1)
+        largest[run] = KN * run.largest_coupler_forces_n
+        connections = numpy.arange(1, largest[run].shape[1] + 1)
         axes.plot(connections, largest[run][0], label=run.label, **group.line(run))
         axes.plot(connections, largest[run][1], **group.line(run))
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0)
@@ -41,8 +46,10 @@ def draw_largest(group: Group) -> Figure:
                       ha="right", va=align, color=style.MUTED)
     style.legend_above(axes)
 
+    of_records = [run.label for run in runs if run.couplers_file is None]
     caption = ("Largest tension and compression of each connection during the run; connection c joins vehicles c and "
-               "c + 1. From the records of the bag" + ("; the cards have the largest of all exchanges." if first.summary else "."))
+               "c + 1. Of all exchanges (couplers.csv)"
+               + ("." if not of_records else f"; of {' and '.join(of_records)} of the records of the bag only."))
     for panel, run in zip(below, others):
         difference = largest[run] - largest[first]
         connections = numpy.arange(1, difference.shape[1] + 1)
@@ -50,14 +57,14 @@ def draw_largest(group: Group) -> Figure:
             panel.plot(connections, values, linestyle=dash, color=group.colour(run), linewidth=1.4, label=side)
         panel.set_ylabel("[kN]")
         style.legend_inside(panel)
-        side, at = numpy.unravel_index(numpy.abs(difference).argmax(), difference.shape)
-        caption += (f" {group.difference(run, first)}: {numpy.abs(difference).mean():.2f} kN on average in size, at most "
-                    f"{difference[side, at]:+.1f} kN at connection {at + 1}.")
+        mean, most, connection = compare_largest(largest[first], largest[run])
+        caption += (f" {group.difference(run, first)}: {mean:.2f} kN on average in size, at most {minus(f'{most:+.1f}')} kN at "
+                    f"connection {connection}.")
     canvas.axes[-1].set_xlabel("connection, from the front")
     canvas.axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
-    if all(paper.is_of_paper(run) for run in runs) and {"ltd", "2d"} <= {run.model for run in runs}:
+    if all(run.is_of_paper for run in runs) and {"ltd", "2d"} <= {run.model for run in runs}:
         caption += _beside_the_paper(first.scenario, axes)
-    return Figure("largest_coupler_forces", "Largest coupler forces along the train", caption + group.without(runs, "forces"),
+    return Figure("largest_coupler_forces", "Largest coupler forces along the train", caption + not_compared + not_shown,
                   canvas)
 
 
@@ -75,12 +82,9 @@ def _beside_the_paper(scenario: str, axes) -> str:
 
 def choose(group: Group) -> int:
     """The connection to follow: the user's, else the paper's, else the one with the largest force."""
-    runs = _runs_with_couplers(group)
-    connections = runs[0].vehicles - 1
     if group.coupler:
-        if group.coupler > connections:
-            raise LeftOut(f"There is no coupler {group.coupler}: the train has {connections}.")
         return group.coupler
+    runs, _ = group.drawable(_why_not)
     if runs[0].vehicles == paper.VEHICLES:
         return paper.COUPLER
     return int(numpy.abs(_forces_kn(runs[0])).max(axis=0).argmax()) + 1
@@ -88,8 +92,10 @@ def choose(group: Group) -> int:
 
 def draw_history(group: Group) -> Figure:
     coupler = choose(group)
-    runs = [run for run in _runs_with_couplers(group) if run.vehicles > coupler]
-    first, others = runs[0], runs[1:]
+    runs, not_shown = group.drawable(lambda run: _why_not(run) or (
+        f"there is no coupler {coupler}: the train has {run.vehicles - 1}" if run.vehicles <= coupler else ""))
+    others, not_compared = group.comparable(runs, "forces", same_train=False)
+    first = runs[0]
     canvas, axes, below = panels_with_differences(4.2, [group.difference(run, first) for run in others])
     caption = f"Force of coupler {coupler}, tension positive (the paper's Figure 11 draws it negative)."
     history = {run: _forces_kn(run)[:, coupler - 1] for run in runs}
@@ -97,16 +103,20 @@ def draw_history(group: Group) -> Figure:
         table = run.recording.forces
         axes.plot(table.time_s, history[run], label=run.label, **group.line(run))
         most = history[run].argmax()
-        caption += f" {run.label}: largest tension {history[run][most]:.1f} kN at {table.time_s[most]:.2f} s."
+        caption += f" {run.label}: largest tension {minus(f'{history[run][most]:.1f}')} kN at {table.time_s[most]:.2f} s."
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0)
-    if coupler == paper.COUPLER and first.scenario == "emergency" and all(paper.is_of_paper(run) for run in runs):
+    if coupler == paper.COUPLER and first.scenario == "emergency" and all(run.is_of_paper for run in runs):
         for run in runs:
             if run.model in paper.COUPLER_TENSION_KN:
                 axes.plot(paper.COUPLER_TIME_S, paper.COUPLER_TENSION_KN[run.model], "o", markersize=9,
                           markerfacecolor="none", markeredgewidth=1.8, color=group.colour(run),
                           label=f"the paper, {run.label}")
-        caption += (" Circles: the paper's largest tensions, 750 kN in LTD and 484 kN in 2D. That the two models part there "
-                    "was not found here (docs/validation.md).")
+        printed = [f"{paper.COUPLER_TENSION_KN[model]:g} kN ({MODEL_NAMES[model]})" for model in paper.COUPLER_TENSION_KN
+                   if model in {run.model for run in runs}]
+        if printed:
+            caption += f" Circles: the paper's largest tension, {', '.join(printed)}."
+        if len(printed) > 1:
+            caption += " That the two models part there was not found here (docs/validation.md)."
     axes.set_ylabel(f"force of coupler {coupler} [kN]")
     style.mark_commands(axes, group.commands())
     style.legend_above(axes, columns=5 if len(runs) < 3 else 3)
@@ -117,4 +127,5 @@ def draw_history(group: Group) -> Figure:
         panel.set_ylabel("[kN]")
         style.mark_commands(panel, group.commands(), named=False)
     canvas.axes[-1].set_xlabel("time [s]")
-    return Figure(f"coupler_{coupler}", f"Force of coupler {coupler}", caption + group.without(runs, "forces"), canvas)
+    return Figure(f"coupler_{coupler}", f"Force of coupler {coupler}", caption + not_compared + not_shown,
+                  canvas)

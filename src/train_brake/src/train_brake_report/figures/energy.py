@@ -3,7 +3,7 @@
 import numpy
 
 from train_brake_report import style
-from train_brake_report.figure import Figure, LeftOut, new_canvas
+from train_brake_report.figure import Figure, minus, new_canvas
 from train_brake_report.group import Group
 from train_brake_report.run import Run
 
@@ -23,15 +23,21 @@ def _series(run: Run) -> tuple:
     return time_s, energies, ledger[0].initial_j, numpy.array([m.residual_j for m in ledger])
 
 
+def _why_not(run: Run) -> str:
+    if len(run.recording.ledger) < 2:
+        return "the recording has no two messages of the type train_brake_msgs/EnergyLedger"
+    if run.recording.ledger[0].initial_j <= 0.0:
+        return "the train stood at the start: there is no initial energy to measure the residual by"
+    return ""
+
+
 def _residual_share(run: Run) -> numpy.ndarray:
     _, _, initial_j, residual_j = _series(run)
     return residual_j / initial_j
 
 
 def draw(group: Group) -> Figure:
-    runs = [run for run in group.runs if len(run.recording.ledger) > 1]
-    if not runs:
-        raise LeftOut("The recording has no two messages of the type train_brake_msgs/EnergyLedger.")
+    runs, not_shown = group.drawable(_why_not)
     shown = next((run for run in runs if run.model == "2d"), runs[0])
     time_s, energies, initial_j, _ = _series(shown)
     canvas = new_canvas(9.6)
@@ -51,8 +57,8 @@ def draw(group: Group) -> Figure:
     largest = max(numpy.abs(share).max() for share in shares.values())
     scale = 10.0 ** numpy.floor(numpy.log10(largest)) if largest > 0.0 else 1.0
     for run in runs:
-        below.plot(_series(run)[0], shares[run] / scale, label=run.label, **group.line(run))
-    below.set_ylabel(f"residual over initial\nenergy [{scale:.0e}]")
+        below.plot(_series(run)[0], shares[run] / scale, label=run.label, marker=".", **group.line(run))
+    below.set_ylabel(f"residual over initial\nenergy [{minus(f'{scale:.0e}')}]")
     below.set_xlabel("time [s]")
     if len(runs) > 1:
         style.legend_above(below)
@@ -60,15 +66,16 @@ def draw(group: Group) -> Figure:
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is single)
     caption = ("Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
-               "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration.")
+               "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
+               f"{numpy.median(numpy.diff(time_s)):g} s.")
     if len(group.runs) > 1:
         caption += f" Top and middle: {shown.label}."
     gravity = shown.recording.ledger[-1].gravity_work_j
     if abs(gravity) > LARGE * initial_j:
         caption += f" The grade added {MJ * gravity:.0f} MJ."
     for run in runs:
-        caption += f" {run.label}: residual {shares[run][-1]:+.1e} of the initial energy at the end."
-    return Figure("energy", "Energy ledger", caption, canvas)
+        caption += f" {run.label}: residual {minus(f'{shares[run][-1]:+.1e}')} of the initial energy at the end."
+    return Figure("energy", "Energy ledger", caption + not_shown, canvas)
 
 
 def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
@@ -78,7 +85,7 @@ def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
     ends = []
     for i, (name, e) in enumerate(sorted(taken.items(), key=lambda item: -item[1][-1])):
         colour = style.COLOURS[i % len(style.COLOURS)]
-        axes.semilogy(time_s, numpy.where(e > smallest, e, numpy.nan), color=colour,
+        axes.semilogy(time_s, numpy.where(e > smallest, e, numpy.nan), color=colour, marker=".", markersize=3,
                       linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)))
         ends.append((e[-1], name, colour))
     axes.set_ylabel("dissipated [J]")

@@ -16,7 +16,8 @@ def spread_over_train(vehicles: int) -> list:
 
 
 def draw(group: Group) -> Figure:
-    runs = group.having("pressures")
+    runs, not_shown = group.having("pressures")
+    others, not_compared = group.comparable(runs, "pressures")
     first = runs[0]
     shown = spread_over_train(first.vehicles)
     pressures = {run: KPA * run.recording.pressures["cylinder_pressure_pa"] for run in runs}
@@ -28,7 +29,7 @@ def draw(group: Group) -> Figure:
     for vehicle, colour in zip(shown, style.COLOURS):
         axes.plot(first.recording.pressures.time_s, pressures[first][:, vehicle - 1], color=colour,
                   label=f"vehicle {vehicle}")
-    for run in group.comparable(runs):
+    for run in others:
         a, b = common_rows(first.recording.pressures.time_s, run.recording.pressures.time_s)
         difference = float(numpy.abs(pressures[run][b] - pressures[first][a]).max())
         if difference == 0.0:
@@ -44,4 +45,4 @@ def draw(group: Group) -> Figure:
     axes.set_ylim(0.0, 1.12 * max(p.max() for p in pressures.values()))
     style.mark_commands(axes, group.commands())
     style.legend_above(axes, columns=5)
-    return Figure("pressures", "Cylinder pressures", caption + group.without(runs, "pressures"), canvas)
+    return Figure("pressures", "Cylinder pressures", caption + not_compared + not_shown, canvas)

@@ -8,8 +8,8 @@ from matplotlib import patheffects
 from matplotlib.colors import LogNorm
 
 from train_brake_report import style, wave
-from train_brake_report.figure import Figure, LeftOut, Table, new_canvas
-from train_brake_report.group import Group
+from train_brake_report.figure import Figure, LeftOut, Table, minus, new_canvas
+from train_brake_report.group import Group, lacks
 from train_brake_report.run import Run
 from train_brake_report.series import common_rows, decimate
 from train_brake_report.slides import LOCKED, SLIDING, SLOWEST_MPS, Slide, find_slides
@@ -67,13 +67,17 @@ def _limit(values: numpy.ndarray) -> tuple:
     return (_round_up(largest) if largest < 1.3 * most else _round_up(most)), largest
 
 
-def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label: str, arrows: str, **colours) -> None:
-    image = axes.imshow(decimate(values, COLUMNS), aspect="auto", interpolation="nearest",
-                        extent=(time_s[0], time_s[-1], values.shape[1] + 0.5, 0.5), **colours)
+def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label: str, arrows: str, **colours) -> str:
+    """Returns a sentence on what is missing; empty if nothing is."""
+    picture, begin_s, end_s = decimate(time_s, values, COLUMNS)
+    image = axes.imshow(picture, aspect="auto", interpolation="nearest", extent=(begin_s, end_s, values.shape[1] + 0.5, 0.5),
+                        **colours)
+    axes.set_xlim(time_s[0], time_s[-1])
     axes.grid(False)
     axes.set_ylabel(rows)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label, extend=arrows)
     bar.outline.set_visible(False)
+    return " Grey: no records." if numpy.isnan(picture).any() else ""
 
 
 def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndarray, signed: bool, label: str) -> str:
@@ -82,32 +86,41 @@ def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndar
     beyond = largest > limit
     least = -limit if signed else 0.0
     arrows = ["neither", "max", "min", "both"][int(values.max() > limit) + 2 * int(values.min() < least - 0.01 * limit)]
-    _image(axes, quantity.rows, time_s, values, label, arrows, cmap=style.DIVERGING if signed else style.SEQUENTIAL,
-           vmin=least, vmax=limit)
+    missing = _image(axes, quantity.rows, time_s, values, label, arrows, cmap=style.DIVERGING if signed else style.SEQUENTIAL,
+                     vmin=least, vmax=limit)
     sign = "±" if signed else ""
     unit = quantity.unit[quantity.unit.index("[") + 1:-1]
     return (f"Colours end at {sign}{limit:g} {unit}" + (f" (99.9 % of the values; the largest is {largest:.3g})" if beyond
-                                                        else "") + ".")
+                                                        else "") + "." + missing)
 
 
-def _series(quantity: Quantity, group: Group) -> dict:
-    """{run: (times, values)} of the runs that know the quantity; LeftOut if there are none."""
-    series = {run: quantity.of(run) for run in group.having(quantity.table)}
-    series = {run: (time_s, values) for run, (time_s, values) in series.items() if len(time_s) > 1}
-    if not series:
-        raise LeftOut("The LTD models have no wheels that could slip." if quantity is SLIP else "There is but one record.")
-    return series
+def _series(quantity: Quantity, group: Group, least_rows: int = 2) -> Tuple[dict, str]:
+    """({run: (times, values)} of the runs that can be drawn, a sentence on the others); LeftOut if there are none."""
+    def why_not(run: Run) -> str:
+        reason = lacks(run, quantity.table)
+        if reason:
+            return reason
+        time_s, values = quantity.of(run)
+        if len(time_s) < 2:
+            return "the LTD models have no wheels that could slip" if quantity is SLIP and run.model != "2d" else \
+                "there is but one record"
+        if values.shape[1] < least_rows:
+            return f"a picture along the train needs more than one {quantity.rows}"
+        return ""
+    runs, not_shown = group.drawable(why_not)
+    return {run: quantity.of(run) for run in runs}, not_shown
 
 
 def _draw(quantity: Quantity, group: Group) -> Figure:
-    series = _series(quantity, group)
+    series, not_shown = _series(quantity, group)
     runs = list(series)
     first, shown = runs[0], next((run for run in runs if run.model == "2d"), runs[0])
-    if series[first][1].shape[1] < 2:
-        raise LeftOut(f"A picture along the train needs more than one {quantity.rows}.")
     same, differences = [], []
-    for run in group.comparable(runs):
+    others, not_compared = group.comparable(runs, quantity.table)
+    for run in others:
         a, b = common_rows(series[first][0], series[run][0])
+        if not len(a):  # but for records that do not know the quantity
+            continue
         difference = series[run][1][b] - series[first][1][a]
         if difference.any():
             differences.append((run, series[run][0][b], difference))
@@ -129,9 +142,8 @@ def _draw(quantity: Quantity, group: Group) -> Figure:
     if same:
         caption += f" {' and '.join(same)}: the same as {first.label}."
     panels[-1].set_xlabel("time [s]")
-    if quantity is SLIP and len(runs) < len(group.runs):
-        caption += " LTD vehicles have no wheels that could slip."
-    return Figure(quantity.name, quantity.title, caption + group.without(group.having(quantity.table), quantity.table), canvas)
+    panels[-1].set_xlim(min(time_s[0] for time_s, _ in series.values()), max(time_s[-1] for time_s, _ in series.values()))
+    return Figure(quantity.name, quantity.title, caption + not_compared + not_shown, canvas)
 
 
 def draw_force(group: Group) -> Figure:
@@ -150,10 +162,13 @@ SLIDE_RULE = f"creepage above {100 * SLIDING:g} % at more than {SLOWEST_MPS:g} m
 
 
 def draw_slip(group: Group) -> Figure:
-    sliding = {run: find_slides(run.recording.state) for run in _series(SLIP, group)}
+    series, not_shown = _series(SLIP, group, least_rows=1)
+    sliding = {run: find_slides(run.recording.state) for run in series}
     run = max(sliding, key=lambda r: len(sliding[r]))
     if sliding[run]:
-        return _draw_slides(run, sliding[run])
+        figure = _draw_slides(run, sliding[run])
+        figure.caption += not_shown
+        return figure
     figure = _draw(SLIP, group)
     figure.caption += f" No wheel slid ({SLIDE_RULE})."
     return figure
@@ -164,10 +179,10 @@ def _draw_slides(run: Run, slides: List[Slide]) -> Figure:
     canvas = new_canvas(3.9)
     axes = canvas.subplots()
     if creepage.shape[1] > 1:
-        _image(axes, "vehicle", time_s, numpy.maximum(numpy.abs(creepage), LEAST_SLIP), "size of creepage [%]", "min",
+        missing = _image(axes, "vehicle", time_s, numpy.maximum(numpy.abs(creepage), LEAST_SLIP), "size of creepage [%]", "min",
                cmap=style.SEQUENTIAL, norm=LogNorm(LEAST_SLIP, 100.0))
         axes.plot([s.begin_s for s in slides], [s.vehicle for s in slides], ">", color=style.VERMILLION, markersize=4)
-        caption = f"{SLIP.caption} The scale is logarithmic."
+        caption = f"{SLIP.caption} The scale is logarithmic.{missing}"
     else:
         axes.plot(time_s, creepage[:, 0], linewidth=1.2)
         axes.plot([s.begin_s for s in slides], [100 * SLIDING] * len(slides), ">", color=style.VERMILLION)
@@ -182,7 +197,7 @@ def _draw_slides(run: Run, slides: List[Slide]) -> Figure:
     if len(slides) > ROWS_OF_SLIDES:
         caption += f" The table has the first {ROWS_OF_SLIDES}."
     table = Table(["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
-                  [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}",
+                  [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}".replace("-", "\u2212"),
                     "yes" if s.locked else "no"] for s in slides[:ROWS_OF_SLIDES]])
     return Figure(SLIP.name, SLIP.title, caption, canvas, table)
 
@@ -207,8 +222,18 @@ def _phases(run: Run) -> List[_Phase]:
 
 
 def draw_wave(group: Group) -> Figure:
-    run = group.having("pressures")[0]
-    phases = _phases(run)
+    phases_of = {}
+
+    def why_not(run: Run) -> str:
+        try:
+            phases_of[run] = _phases(run)
+        except LeftOut as left_out:
+            reason = str(left_out).rstrip(".")
+            return reason[0].lower() + reason[1:]
+        return ""
+    runs, not_shown = group.drawable(lambda run: lacks(run, "pressures") or why_not(run))
+    run = runs[0]
+    phases = phases_of[run]
     canvas = new_canvas(3.9 * len(phases))
     rows = canvas.subplots(len(phases), 2, squeeze=False, width_ratios=[3, 1], sharey=True)
     time_s, pressure = PRESSURE.of(run)
@@ -225,16 +250,20 @@ def draw_wave(group: Group) -> Figure:
                         markersize=3)
         reach = max(1.0, 1.1 * max(abs(v) for v in beside.get_xlim()))
         beside.set_xlim(-reach, reach)
-        beside.set_xlabel("seen - fitted [ms]")
+        beside.set_xlabel("seen \u2212 fitted [ms]")
         axes.set_xlabel("time [s]")
         axes.set_title(f"{phase.name}: fitted {found.speed_mps:.2f} m/s"
                        + (f", configured {phase.configured_mps:g} m/s" if phase.configured_mps else ""), loc="left",
                        fontsize=11.5)
         starts = ", ".join(f"vehicle {vehicle} at {start_s:.2f} s" for vehicle, start_s in found.sources())
-        caption += (f"The {phase.name} runs at {found.speed_mps:.2f} ± {found.speed_error_mps:.2f} m/s by least squares "
+        error = f"\u00b1 {minus(f'{found.speed_error_mps:.1g}')}" if found.speed_error_mps >= 1e-3 else "\u00b1 less than 0.001"
+        caption += (f"The {phase.name} runs at {found.speed_mps:.2f} m/s {error} m/s (scatter only) by least squares "
                     f"over the times at which the recorded pressures begin to move ("
                     + (f"configured: {phase.configured_mps:g} m/s" if phase.configured_mps
                        else "the configuration names no speed for it")
-                    + f"); it starts at {starts}. ")
-    caption += "Lines: the fit. Right: how far each vehicle is from it."
-    return Figure("brake_wave", "Brake wave", caption, canvas)
+                    + "); " + (f"it starts at {starts}. " if starts else "where it starts was not recorded. "))
+    caption += (f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, the "
+                "line through its beginning is not. Lines: the fit. Right: how far each vehicle is from it.")
+    if len(group.runs) > 1:
+        caption += f" Of {run.label}."
+    return Figure("brake_wave", "Brake wave", caption + not_shown, canvas)

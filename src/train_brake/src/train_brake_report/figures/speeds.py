@@ -1,17 +1,20 @@
 """Speed of the train over time (the paper's Figure 8)."""
 
-from train_brake_report import paper, style
-from train_brake_report.figure import Figure, panels_with_differences
+import numpy
+
+from train_brake_report import cards, paper, style
+from train_brake_report.figure import Figure, minus, panels_with_differences
 from train_brake_report.group import Group
 from train_brake_report.run import KMH_PER_MPS
 from train_brake_report.series import common_rows
 
 
 def draw(group: Group) -> Figure:
-    runs = group.having("state")
-    first, others = runs[0], group.comparable(runs)
+    runs, not_shown = group.having("state")
+    others, not_compared = group.comparable(runs, "state")
+    first = runs[0]
     canvas, axes, below = panels_with_differences(4.2, [group.difference(run, first) for run in others])
-    of_paper = [run for run in runs if paper.is_of_paper(run)]
+    of_paper = [run for run in runs if run.is_of_paper]
     for run in runs:
         axes.plot(run.recording.state.time_s, run.mean_speed_kmh, label=run.label, **group.line(run))
     if len(runs) == 1 and first.vehicles > 1:
@@ -28,16 +31,16 @@ def draw(group: Group) -> Figure:
 
     caption = "Speed of the train: the mean of its momentum."
     if first.vehicles > 1:
-        caption += " In a slack train single vehicles run up to 1 km/h faster or slower."
+        apart = max(numpy.abs(KMH_PER_MPS * run.recording.state["speed_mps"] - run.mean_speed_kmh[:, None]).max() for run in runs)
+        caption += f" Single vehicles run up to {apart:.2f} km/h faster or slower."
     for panel, run in zip(below, others):
         a, b = common_rows(first.recording.state.time_s, run.recording.state.time_s)
         difference = run.mean_speed_kmh[b] - first.mean_speed_kmh[a]
         panel.plot(first.recording.state.time_s[a], difference, color=group.colour(run), linewidth=1.8)
         panel.set_ylabel("[km/h]")
         style.mark_commands(panel, group.commands(), named=False)
-        caption += f" {group.difference(run, first)}: {difference[-1]:+.4f} km/h at the end."
+        caption += f" {group.difference(run, first)}: {minus(f'{difference[-1]:+.4f}')} km/h at the last common instant."
     canvas.axes[-1].set_xlabel("time [s]")
     if of_paper:
-        caption += (" Circles: the paper's values at the last step. LTD without rotational inertia was calibrated on them; "
-                    "the others are predictions (docs/validation.md).")
-    return Figure("speeds", "Speed", caption + group.without(runs, "state"), canvas)
+        caption += f" Circles: the paper's values at the last step. {cards.calibrated({run.model for run in of_paper})}"
+    return Figure("speeds", "Speed", caption + not_compared + not_shown, canvas)

@@ -4,16 +4,15 @@ import numpy
 
 from train_brake_report import style
 from train_brake_report.figure import Figure, LeftOut, new_canvas
-from train_brake_report.group import Group
+from train_brake_report.group import Group, lacks
 
 WHEELS = 8  # of a wagon, one shoe each
 KN = 1e-3
 
 
 def draw(group: Group) -> Figure:
-    runs = [run for run in group.having("state") if run.vehicles >= group.wagon]
-    if not runs:
-        raise LeftOut(f"There is no wagon {group.wagon}: the train has {group.runs[0].vehicles} vehicle(s).")
+    runs, not_shown = group.drawable(lambda run: lacks(run, "state") or (
+        f"there is no wagon {group.wagon}: the train has {run.vehicles} vehicle(s)" if run.vehicles < group.wagon else ""))
     if not any(numpy.nan_to_num(run.recording.state["shoe_force_n"][:, group.wagon - 1]).any() for run in runs):
         raise LeftOut(f"The brake of wagon {group.wagon} was not applied.")
     canvas = new_canvas(4.2)
@@ -44,4 +43,4 @@ def draw(group: Group) -> Figure:
     style.mark_commands(axes, group.commands())
     style.legend_above(axes, columns=4 if len(runs) < 3 else 3)
     return Figure(f"shoe_and_wheel_{group.wagon}", f"Shoe and wheel of wagon {group.wagon}",
-                  caption + group.without(runs, "state"), canvas)
+                  caption + not_shown, canvas)
