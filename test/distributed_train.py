@@ -329,7 +329,8 @@ class DistributedTrain(unittest.TestCase):
 
     def test_bad_input_ends_with_2(self):
         for arguments, complaint in ((["set:=dt_s=abc"], "dt_s must be"), (["vehicles:=7"], "vehicles:=6"),
-                                     (["client:=fast"], "client must be")):
+                                     (["client:=fast"], "client must be"), (["checkpoint_interval:=nan"], "checkpoint_interval_s must be"),
+                                     (["on_lost_node:=foo"], "on_lost_node must be")):
             with self.subTest(arguments):
                 launch = self.launch(*arguments, "nodes:=2")
                 self.assertEqual(2, launch.wait(60))

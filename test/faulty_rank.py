@@ -5,6 +5,8 @@ usage: faulty_rank.py SOUND_NODE FAULT EXCHANGE
 
 FAULT is one of
   nan       the velocity of a coupler head is not a number
+  record    a speed in the record is not a number
+  absent    a fault of a vehicle that the rank does not have
   stale     the reply is that to the exchange before
   slow      the reply takes 1.5 s
   version   the node speaks another version of the protocol
@@ -34,12 +36,20 @@ class FaultyRank:
             rospy.wait_for_service(f"{sound_node}/{service}")
         self.configure = rospy.ServiceProxy(f"{sound_node}/configure", Configure, persistent=True)
         self.step = rospy.ServiceProxy(f"{sound_node}/step", Step, persistent=True)
+        if fault == "md5sum":
+            self.announce()
         rospy.Service("~step", Step, self.on_step)
         rospy.Service("~configure", OtherConfigure if fault == "md5sum" else Configure, self.on_configure)
 
+    def announce(self):
+        """For whoever measures how long it takes until it is noticed."""
+        print("the fault:", self.fault, flush=True)
+
     def on_configure(self, request):
         request.memory_pid = 0  # calls of Step shall come here
-        request.protocol_version += self.fault == "version"
+        if self.fault == "version":
+            self.announce()
+            request.protocol_version += 1
         return self.spoilt(self.configure(request), CONFIGURE)
 
     def on_step(self, request):
@@ -50,10 +60,15 @@ class FaultyRank:
     def spoilt(self, reply, exchange):
         if exchange != self.exchange:
             return reply
+        self.announce()
         if self.fault == "slow":
             time.sleep(SLOW_S)
         if self.fault == "nan":
             reply.head_velocity_mps = [float("nan"), *reply.head_velocity_mps[1:]]
+        if self.fault == "record":
+            reply.record.speed_mps = [float("nan"), *reply.record.speed_mps[1:]]
+        if self.fault == "absent":
+            reply.fault_vehicle = 2**32 - 1
         if self.fault == "stale":
             return self.last_reply
         return reply

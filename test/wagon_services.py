@@ -100,6 +100,8 @@ class WagonServices(unittest.TestCase):
         first = self.step(self.step_request(0, run_id=self.run_id, record=True, ledger=True))
         self.assertTrue(first.ok, first.message)
         self.assertEqual(self.step(self.step_request(0, run_id=self.run_id)), first)
+        self.refused(self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0, 0.0])),
+                     "exchange 0 has been computed already, with other forces or pressures")
         # About 22.2 m/s for 2 ms; brake and couplers change the speed by far less than 1 % in that time.
         for distance in first.head_displacement_m:
             self.assertAlmostEqual(distance, 80 / 3.6 * 0.002, delta=0.01 * 80 / 3.6 * 0.002)
@@ -133,7 +135,8 @@ class WagonServices(unittest.TestCase):
         call = subprocess.run(["rosservice", "call", NODE + "/configure", arguments], stdout=subprocess.PIPE,
                               universal_newlines=True, check=True)
         self.assertIn("ok: False", call.stdout)
-        self.assertIn("driven in run %d" % self.run_id, call.stdout)
+        self.assertIn("driven in another run", call.stdout)
+        self.assertNotIn(str(self.run_id), call.stdout)
         self.assertTrue(self.step(self.step_request(1, run_id=self.run_id)).ok)
 
     def test_detailed_vehicles_are_published(self):

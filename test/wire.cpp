@@ -20,7 +20,6 @@
 #include "ltd_master/rank_messages.h"
 #include "ltd_master/ros_transport.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 
 namespace {
@@ -144,8 +143,7 @@ class LostRank : public testing::TestWithParam<Path> {
     std::vector<Rank> ranks = train_dynamics::SplitRanks(kVehicles, 2);
     ranks[0].name = "/own/" + name_;
     ranks[1].name = "/shared/" + ranks[1].name;
-    transport_ = std::make_unique<RosTransport>(ranks, NextRun(),
-                                                train_dynamics::config::Write(scenario_.params), options);
+    transport_ = std::make_unique<RosTransport>(ranks, NextRun(), scenario_.params, options);
     master_ =
         std::make_unique<TrainMaster>(scenario_.params, scenario_.consist, *transport_, scenario_.pressures);
     master_->Start();
@@ -229,8 +227,7 @@ class LostAndFound : public testing::TestWithParam<Path> {
     caller_ = GetParam() == Path::kBlocking
                   ? ltd_master::MakeBlockingCaller(ranks_, kVehicles)
                   : ltd_master::MakeAsynchronousCaller(ranks_, GetParam() == Path::kMemory ? run_ : 0);
-    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run_,
-                                                           train_dynamics::config::Write(scenario_.params));
+    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run_, scenario_.params);
     for (int rank = 0; rank < kVehicles; ++rank) Connect(rank);
     ltd_master::LateWatch watch = Watch(kSoon);
     ASSERT_TRUE(caller_->Call(messages_->configure, watch).lost.empty());
@@ -346,8 +343,7 @@ class OddRank : public testing::Test {
       while (!caller_->Connect(static_cast<int>(rank)).empty()) {
       }
     }
-    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run,
-                                                           train_dynamics::config::Write(scenario_.params));
+    messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run, scenario_.params);
     ltd_master::LateWatch watch(ranks_, "test", kSoon, interrupted_);
     ASSERT_TRUE(caller_->Call(messages_->configure, watch).lost.empty());
   }
@@ -442,13 +438,13 @@ TEST(Wire, CarriesTheBitsOfTheTrainInOneProcess) {
     const LoadedScenario scenario = Load({std::string("model=") + model});
     train_dynamics::InProcessTransport in_process(scenario.params, scenario.consist, 1);
     const std::vector<std::uint64_t> expected = Fingerprint(scenario, in_process);
-    const std::string text = train_dynamics::config::Write(scenario.params);
     for (const int ranks : {1, 3, kVehicles}) {
       for (const Path path : kPaths) {
         SCOPED_TRACE(std::string(model) + ", ranks: " + std::to_string(ranks) + ", " + PathName({path, 0}));
         RosTransportOptions options;
         Choose(path, options);
-        RosTransport transport(RanksIn("/ranks_" + std::to_string(ranks), ranks), NextRun(), text, options);
+        RosTransport transport(RanksIn("/ranks_" + std::to_string(ranks), ranks), NextRun(), scenario.params,
+                               options);
         EXPECT_EQ(Fingerprint(scenario, transport), expected);
       }
     }
@@ -461,7 +457,7 @@ TEST(Wire, NamesTheRanksThatAreMissingAtTheStart) {
   ranks[1].name = "/nowhere/wagon_003";
   RosTransportOptions options;
   options.start_timeout_s = 0.5;
-  RosTransport transport(ranks, NextRun(), train_dynamics::config::Write(scenario.params), options);
+  RosTransport transport(ranks, NextRun(), scenario.params, options);
   TrainMaster master(scenario.params, scenario.consist, transport, scenario.pressures);
   try {
     master.Start();
@@ -478,7 +474,7 @@ TEST(Wire, PassesOnWhyARankRefuses) {
   const LoadedScenario scenario = Load();
   std::vector<Rank> ranks = RanksIn("/ranks_3", 3);
   ranks[2].count = 3;  // one more than the train has
-  RosTransport transport(ranks, NextRun(), train_dynamics::config::Write(scenario.params), {});
+  RosTransport transport(ranks, NextRun(), scenario.params, {});
   train_dynamics::ExchangeReply reply(kVehicles + 1, {});
   try {
     transport.Start(reply);
@@ -491,12 +487,39 @@ TEST(Wire, PassesOnWhyARankRefuses) {
   }
 }
 
+TEST(Wire, EachLostRankIsGivenItsTime) {
+  const LoadedScenario scenario = Load();
+  std::vector<Rank> ranks = train_dynamics::SplitRanks(kVehicles, 2);
+  std::array<std::unique_ptr<WagonProcess>, 2> processes;
+  std::array<std::string, 2> names;
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    names[i] = "wagon_" + std::to_string(NextRun());
+    ranks[i].name = "/own/" + names[i];
+    processes[i] = std::make_unique<WagonProcess>(names[i]);
+  }
+  RosTransportOptions options;
+  options.recovery_timeout_s = 4.0;
+  RosTransport transport(ranks, NextRun(), scenario.params, options);
+  TrainMaster master(scenario.params, scenario.consist, transport, scenario.pressures);
+  master.Start();
+  master.Exchange();
+  for (const auto& process : processes) process->Signal(SIGKILL);
+  std::thread later([&] {  // the second one after more than the time-out of the first
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+      processes[i] = std::make_unique<WagonProcess>(names[i]);
+    }
+  });
+  EXPECT_NO_THROW(master.Exchange());
+  later.join();
+  EXPECT_EQ(transport.recoveries(), 2u);
+}
+
 TEST(Wire, WagonsStayWhileTheMasterPausesAndLeaveWhenItHasGone) {
   const LoadedScenario scenario = Load();
   WagonProcess process("wagon_001", "_master_timeout_s:=1");
-  auto transport =
-      std::make_unique<RosTransport>(std::vector<Rank>{{"/own/wagon_001", 0, kVehicles}}, NextRun(),
-                                     train_dynamics::config::Write(scenario.params), RosTransportOptions());
+  auto transport = std::make_unique<RosTransport>(std::vector<Rank>{{"/own/wagon_001", 0, kVehicles}},
+                                                  NextRun(), scenario.params, RosTransportOptions());
   TrainMaster master(scenario.params, scenario.consist, *transport, scenario.pressures);
   master.Start();
   master.Exchange();

@@ -35,11 +35,10 @@ int main(int argc, char** argv) {
   if (!WaitForRosMaster()) return ltd_master::kInterrupted;
   const ros::NodeHandle own("~");  // the node and its log end with the last handle: this one
   int exit_code = ltd_master::kFailure;
-  std::string exit_status_file;
+  // First of all parameters: that one of the others is wrong is told there, too.
+  const auto exit_status_file = own.param<std::string>("exit_status_file", "");
   try {
-    const auto options = ltd_master::MasterOptions::FromParameters(own);
-    exit_status_file = options.exit_status_file;
-    exit_code = Run(options, own);
+    exit_code = Run(ltd_master::MasterOptions::FromParameters(own), own);
   } catch (const train_dynamics::config::Error& e) {
     ROS_FATAL("bad configuration:\n%s", e.what());
     exit_code = ltd_master::kBadInput;

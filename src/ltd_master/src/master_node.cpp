@@ -13,7 +13,6 @@
 
 #include "ltd_master/interrupt.h"
 #include "ltd_master/run_command.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
 
@@ -32,7 +31,8 @@ std::vector<std::string> Words(const std::string& text) {
   return words;
 }
 
-/// Unlike that of any other run, so that what a late process of another one sends can be told apart.
+/// Unlike that of any other run, so that what a late process of another one sends can be told apart; random, so that
+/// nobody guesses it.
 std::uint64_t NewRunId() {
   std::random_device random;
   return (static_cast<std::uint64_t>(random()) << 32 | random()) | 1u;
@@ -89,7 +89,6 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
   constexpr int kBlockingThreads = 16;
   options.blocking_threads = OneOf(parameters, "client", "fan_out", "blocking") ? 0 : kBlockingThreads;
   options.shared_memory = parameters.param("shared_memory", true);
-  options.exit_status_file = parameters.param<std::string>("exit_status_file", "");
   return options;
 }
 
@@ -142,11 +141,13 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   transport.recover = options_.recover;
   transport.recovery_timeout_s = options_.recovery_timeout_s;
   constexpr double kSnapshotInterval = 1.0;  // [s] of simulated time
-  transport.snapshot_exchanges = std::max(1L, std::lround(kSnapshotInterval / scenario.exchange_interval_s));
+  constexpr double kMostExchanges = 1000.0;  // bounds what is kept since, and what a lost rank has to repeat
+  transport.snapshot_exchanges =
+      std::lround(std::clamp(kSnapshotInterval / scenario.exchange_interval_s, 1.0, kMostExchanges));
   transport.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
   auto ranks =
       std::make_unique<RosTransport>(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks),
-                                     NewRunId(), train_dynamics::config::Write(scenario), transport);
+                                     NewRunId(), scenario, transport);
   ranks_ = ranks.get();
   last_count_.assign(ranks->ranks().size(), 0);
   return ranks;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ltd_master/late_watch.h"
+#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/snapshot.h"
 
 namespace ltd_master {
@@ -15,6 +16,18 @@ namespace {
 using train_dynamics::ExchangeReply;
 using train_dynamics::ExchangeRequest;
 using train_dynamics::Rank;
+
+/// What of a record has been computed. The rest is NaN.
+enum class Computed {
+  kMotion,     ///< nothing has acted on the vehicles yet
+  kShoeForce,  ///< of forces and creepages this alone: LTD
+  kAll,
+};
+
+template <class Values>
+bool AllFinite(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
 
 /// Copies arrays of a rank's reply to their places in those of the whole train.
 class Unpacker {
@@ -29,6 +42,10 @@ class Unpacker {
 
   void CopyFinite(const char* name, const std::vector<double>& from, std::vector<double>& to) const {
     Copy(name, from, to);
+    CheckFinite(name, from);
+  }
+
+  void CheckFinite(const char* name, const std::vector<double>& from) const {
     const auto wrong =
         std::find_if(from.begin(), from.end(), [](double value) { return !std::isfinite(value); });
     if (wrong != from.end()) {
@@ -37,20 +54,31 @@ class Unpacker {
     }
   }
 
-  void Record(const train_brake_msgs::RankRecord& record, ExchangeReply& reply) const {
-    Copy("position_m", record.position_m, reply.position_m);
-    Copy("speed_mps", record.speed_mps, reply.speed_mps);
+  void Record(const train_brake_msgs::RankRecord& record, Computed computed, ExchangeReply& reply) const {
+    CopyFinite("position_m", record.position_m, reply.position_m);
+    CopyFinite("speed_mps", record.speed_mps, reply.speed_mps);
     Copy("shoe_force_n", record.shoe_force_n, reply.shoe_force_n);
     Copy("wheel_force_n", record.wheel_force_n, reply.wheel_force_n);
     Copy("creepage", record.creepage, reply.creepage);
     Copy("state_digest", record.state_digest, reply.state_digest);
+    if (computed != Computed::kMotion) CheckFinite("shoe_force_n", record.shoe_force_n);
+    if (computed == Computed::kAll) {
+      CheckFinite("wheel_force_n", record.wheel_force_n);
+      CheckFinite("creepage", record.creepage);
+    }
     auto from = record.details.begin();
     for (train_dynamics::WagonDetail& detail : reply.details) {
       if (detail.vehicle < rank_.first || detail.vehicle >= rank_.first + rank_.count) continue;
       if (from == record.details.end() || static_cast<int>(from->vehicle) != detail.vehicle + 1) {
         Fail(fmt::format("replied no details of vehicle {}", detail.vehicle + 1));
       }
-      train_brake_msgs::MessageToDetail(*from++, detail);
+      const train_brake_msgs::WagonState& message = *from++;
+      train_brake_msgs::MessageToDetail(message, detail);
+      if (computed != Computed::kAll) continue;
+      train_brake_msgs::ForEachField(detail, message, [&](const auto& values, const auto&) {
+        if (AllFinite(values)) return;
+        Fail(fmt::format("replied details of vehicle {} that are not finite", detail.vehicle + 1));
+      });
     }
   }
 
@@ -61,6 +89,10 @@ class Unpacker {
     CheckSize("gravity_work_j", record.gravity_work_j.size(), count);
     CheckSize("traction_work_j", record.traction_work_j.size(), count);
     CheckSize("dissipated_j", record.dissipated_j.size(), count * train_dynamics::kDissipations);
+    for (const auto* energies : {&record.kinetic_j, &record.potential_j, &record.gravity_work_j,
+                                 &record.traction_work_j, &record.dissipated_j}) {
+      if (!AllFinite(*energies)) Fail("replied energies that are not finite");
+    }
     auto dissipated = record.dissipated_j.begin();
     for (std::size_t i = 0; i < count; ++i) {
       train_dynamics::VehicleEnergy& energy = reply.energy[rank_.first + i];
@@ -88,9 +120,18 @@ class Unpacker {
         numbers * count != part.state.size()) {
       Fail("replied a snapshot of something else");
     }
+    if (!AllFinite(part.state)) Fail("replied a snapshot that is not finite");
     reply.snapshot.resize((last.first + last.count) * numbers);
     std::copy(part.state.begin(), part.state.end(),
               reply.snapshot.begin() + static_cast<long>(first * numbers));
+  }
+
+  /// @param vehicle  place in the train, from 1
+  void CheckHosted(std::uint32_t vehicle) const {
+    const auto first = static_cast<std::uint32_t>(rank_.first),
+               count = static_cast<std::uint32_t>(rank_.count);
+    if (vehicle > first && vehicle <= first + count) return;
+    Fail(fmt::format("replied a fault of vehicle {}, which it does not have", vehicle));
   }
 
   [[noreturn]] void Fail(const std::string& what) const { throw RankFailure(rank_, when_, what); }
@@ -111,8 +152,12 @@ class Unpacker {
 std::string ExchangeText(std::uint64_t exchange) { return fmt::format("exchange {}", exchange); }
 
 RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
-                           const std::string& scenario_text)
-    : configure(ranks.size()), step(ranks.size()), ranks_(ranks) {
+                           const train_dynamics::ScenarioParams& scenario)
+    : configure(ranks.size()),
+      step(ranks.size()),
+      ranks_(ranks),
+      is_two_d_(scenario.model == train_dynamics::VehicleModel::kTwoD) {
+  const std::string scenario_text = train_dynamics::config::Write(scenario);
   const std::uint64_t digest = train_dynamics::TextDigest(scenario_text);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     train_brake_msgs::ConfigureRequest& request = configure[i].request;
@@ -156,7 +201,7 @@ void RankMessages::Unpack(ExchangeReply& reply) const {
     if (!response.ok) unpacker.Fail(response.message);
     unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
     unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
-    unpacker.Record(response.record, reply);
+    unpacker.Record(response.record, Computed::kMotion, reply);
     unpacker.Energies(response.record, reply);
   }
 }
@@ -180,6 +225,7 @@ void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs
 
 void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
   const std::string when = ExchangeText(whole.exchange);
+  const Computed computed = is_two_d_ ? Computed::kAll : Computed::kShoeForce;
   reply.fault = {};
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const train_brake_msgs::StepResponse& response = step[i].response;
@@ -189,12 +235,13 @@ void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) co
       unpacker.Fail(fmt::format("replied to exchange {}", response.exchange));
     }
     if (response.fault_vehicle != 0) {
+      unpacker.CheckHosted(response.fault_vehicle);
       reply.fault = {static_cast<int>(response.fault_vehicle) - 1, response.fault};
       return;
     }
     unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
     unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
-    if (whole.record) unpacker.Record(response.record, reply);
+    if (whole.record) unpacker.Record(response.record, computed, reply);
     if (whole.ledger) unpacker.Energies(response.record, reply);
     if (whole.snapshot) unpacker.Snapshot(whole.exchange + 1, response.snapshot, ranks_.back(), reply);
   }

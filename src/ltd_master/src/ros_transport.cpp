@@ -39,11 +39,11 @@ void RaiseDescriptorLimit(std::size_t ranks) {
 }  // namespace
 
 RosTransport::RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_t run_id,
-                           const std::string& scenario_text, RosTransportOptions options)
+                           const train_dynamics::ScenarioParams& scenario, RosTransportOptions options)
     : ranks_(std::move(ranks)), options_(std::move(options)) {
   for (train_dynamics::Rank& rank : ranks_) rank.name = ros::names::resolve(rank.name);
   RaiseDescriptorLimit(ranks_.size());
-  messages_ = std::make_unique<RankMessages>(ranks_, run_id, scenario_text);
+  messages_ = std::make_unique<RankMessages>(ranks_, run_id, scenario);
   caller_ = options_.blocking_threads > 0
                 ? MakeBlockingCaller(ranks_, options_.blocking_threads)
                 : MakeAsynchronousCaller(ranks_, options_.shared_memory ? run_id : 0);
@@ -108,15 +108,16 @@ void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& w
   }
   const Clock::time_point start = Clock::now();
   for (const LostRank& one : lost) {
-    BringBack(one, watch.when(), start, [&] { catch_up(one.rank); });
+    BringBack(one, watch.when(), [&] { catch_up(one.rank); });
     ++recoveries_;
     ROS_WARN("%s (%s) is back after %.1f s, with %lu exchanges replayed", ranks_[one.rank].name.c_str(),
              VehiclesText(ranks_[one.rank]).c_str(), SecondsSince(start), log_.size());
   }
 }
 
-void RosTransport::BringBack(const LostRank& lost, const std::string& when, Clock::time_point start,
+void RosTransport::BringBack(const LostRank& lost, const std::string& when,
                              const std::function<void()>& catch_up) {
+  const Clock::time_point start = Clock::now();
   double next_report_s = kSecondsPerReport;
   std::string tried;  // why the last node that was tried did not take its place
   while (true) {

@@ -26,7 +26,7 @@ using train_brake_msgs::StepRequest;
 using train_brake_msgs::StepResponse;
 using train_dynamics::fuzz::Require;
 
-constexpr std::uint64_t kRun = 17;
+constexpr std::uint64_t kRun = 7234981734512349871;
 constexpr std::uint32_t kVehicles = 3;
 
 /// The input, value by value; zeros beyond its end.
@@ -106,10 +106,14 @@ void Spoil(Input& input, ConfigureRequest& request) {
   if (fields & 64u) request.scenario_digest = train_dynamics::TextDigest(request.scenario);
 }
 
-/// The rules of Step.srv, once more.
-bool MayStep(const StepRequest& request, std::uint64_t next) {
+/// The rules of Step.srv, once more. @param last  the request that led to exchange `next`, if that is not 0
+bool MayStep(const StepRequest& request, std::uint64_t next, const StepRequest& last) {
   if (request.run_id != kRun) return false;
-  if (next > 0 && request.exchange == next - 1) return true;
+  if (next > 0 && request.exchange == next - 1) {
+    return request.dt_s == last.dt_s && request.steps == last.steps &&
+           request.coupler_force_n == last.coupler_force_n &&
+           request.cylinder_pressure_pa == last.cylinder_pressure_pa;
+  }
   const auto all_finite = [](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   };
@@ -139,16 +143,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Require(configured.ok, "the master may configure");
   }
   std::uint64_t next = 0;
+  StepRequest last;
+  const auto require_secret = [](std::uint64_t known_run, const std::string& message) {
+    const bool is_told = message.find(std::to_string(kRun)) != std::string::npos;
+    Require(known_run == kRun || !is_told, "the run id is told to nobody");
+  };
   const auto step = [&](const StepRequest& request) {
     const StepResponse reply = server.Step(request);
-    Require(reply.ok == MayStep(request, next), "a request is refused if and only if the rules say so");
+    Require(reply.ok == MayStep(request, next, last), "a request is refused if and only if the rules say so");
+    require_secret(request.run_id, reply.message);
     if (!reply.ok) return;
     Require(Bytes(reply) == Bytes(undisturbed.Step(request)), "strangers have changed nothing");
     next = request.exchange + 1;
+    last = request;
   };
   for (Input input(data, size); !input.empty();) {
     StepRequest request = RightStep(next);
-    switch (input.Take<std::uint8_t>() % 3) {
+    switch (input.Take<std::uint8_t>() % 4) {
       case 0:
         step(request);
         break;
@@ -156,12 +167,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Spoil(input, request);
         step(request);
         break;
+      case 3:  // the master again, unsure whether its last request arrived: a stranger's may have been it
+        step(RightStep(next == 0 ? 0 : next - 1));
+        break;
       default:
         ConfigureRequest configure = RightConfigure();
         Spoil(input, configure);
         if (next == 0 && configure.run_id == kRun) break;  // the master itself, which may begin again
         server.Configure(configure, true, configured);
         Require(!configured.ok, "a stranger may not take over a run");
+        require_secret(configure.run_id, configured.message);
     }
   }
   step(RightStep(next));

@@ -81,6 +81,12 @@ struct WagonServer::Run {
   bool IsRepeated(const StepRequest& request) const {
     return has_replied && request.exchange == next_exchange - 1;
   }
+  /// Whether a request would move the vehicles as the last one has.
+  bool HasLastInputs(const StepRequest& request) const {
+    return request.dt_s == loads.dt_s && request.steps == steps &&
+           request.coupler_force_n == loads.coupler_force_n &&
+           request.cylinder_pressure_pa == loads.cylinder_pressure_pa;
+  }
   /// Brings the vehicles to a snapshot. @throws SnapshotError
   void Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes);
   std::vector<std::uint8_t> Snapshot() const;
@@ -204,7 +210,7 @@ std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& req
                   Text(run_->next_exchange) + " is next");
   }
   if (run_ && request.run_id != run_->id && driven) {
-    throw Refusal("this wagon node is driven in run " + Text(run_->id) + ", and run " + Text(request.run_id) +
+    throw Refusal("this wagon node is driven in another run, and run " + Text(request.run_id) +
                   " must wait until that has ended");
   }
   const ScenarioParams scenario = Read(request.scenario);
@@ -267,9 +273,13 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
   if (!run_) return "this wagon node has no run yet: Configure comes first";
   const Run& run = *run_;
   if (request.run_id != run.id) {
-    return "run " + Text(request.run_id) + " is not known here: this wagon node is in run " + Text(run.id);
+    return "run " + Text(request.run_id) + " is not known here: this wagon node is in another run";
   }
-  if (run.IsRepeated(request)) return "";
+  if (run.IsRepeated(request)) {
+    if (run.HasLastInputs(request)) return "";
+    return "exchange " + Text(request.exchange) +
+           " has been computed already, with other forces or pressures";
+  }
   if (request.exchange != run.next_exchange) {
     return "exchange " + Text(request.exchange) +
            (request.exchange < run.next_exchange ? " is past" : " leaves a gap") + ": exchange " +

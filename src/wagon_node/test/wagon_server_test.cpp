@@ -270,6 +270,40 @@ TEST_F(WagonServerTest, RepeatsItsLastReplyAndMovesNothing) {
   }
 }
 
+TEST_F(WagonServerTest, RefusesARepetitionWithOtherInputs) {
+  Begin();
+  Step(0);
+  const StepRequest right = StepFor(scenario_, 1);
+  const std::string reply = Bytes(server_.Step(right));
+  const std::vector<std::function<void(StepRequest&)>> changes = {
+      [](auto& r) { r.coupler_force_n[1] += 1.0; },
+      [](auto& r) { r.cylinder_pressure_pa[2] += 1.0; },
+      [](auto& r) { r.coupler_force_n.clear(); },
+      [](auto& r) { r.coupler_force_n[0] = std::numeric_limits<double>::quiet_NaN(); },
+      [](auto& r) { r.steps += 1; },
+      [](auto& r) { r.dt_s *= 2.0; }};
+  for (const auto& change : changes) {
+    StepRequest other = right;
+    change(other);
+    ExpectRefused(other, "exchange 1 has been computed already, with other forces or pressures");
+  }
+  StepRequest other_flags = right;
+  other_flags.record = other_flags.ledger = true;
+  EXPECT_EQ(Bytes(server_.Step(other_flags)), reply);
+  EXPECT_TRUE(Step(2).ok);
+}
+
+TEST_F(WagonServerTest, TellsItsRunToNobody) {
+  ConfigureRequest configure = ConfigureFor(scenario_);
+  configure.run_id = 7234981734512349871;
+  ASSERT_TRUE(Configure(configure).ok);
+  StepRequest step = StepFor(scenario_, 0);
+  configure.run_id = kOtherRun;
+  for (const std::string& text : {Configure(configure).message, server_.Step(step).message}) {
+    EXPECT_EQ(text.find("7234981734512349871"), std::string::npos) << text;
+  }
+}
+
 TEST_F(WagonServerTest, MayBeConfiguredOnceMoreBeforeTheFirstExchange) {
   Begin();
   const ConfigureRequest request = ConfigureFor(scenario_);
@@ -297,7 +331,7 @@ TEST_F(WagonServerTest, RefusesStepsThatDoNotFitAndStaysAsItWas) {
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<std::function<void(StepRequest&)>, std::string>> wrong = {
-      {[](auto& r) { r.run_id = kOtherRun; }, "run 18 is not known here: this wagon node is in run 17"},
+      {[](auto& r) { r.run_id = kOtherRun; }, "run 18 is not known here: this wagon node is in another run"},
       {[](auto& r) { r.exchange = 3; }, "exchange 3 is past: exchange 5 is next"},
       {[](auto& r) { r.exchange = 7; }, "exchange 7 leaves a gap: exchange 5 is next"},
       {[](auto& r) { r.exchange = ~std::uint64_t{0}; },
@@ -357,7 +391,7 @@ TEST_F(WagonServerTest, RefusesConfigurationsThatDoNotFitAndStaysAsItWas) {
   }
   ConfigureRequest other = ConfigureFor(scenario_);
   other.run_id = kOtherRun;
-  ExpectRefused(other, "this wagon node is driven in run 17, and run 18 must wait until that has ended");
+  ExpectRefused(other, "this wagon node is driven in another run, and run 18 must wait until that has ended");
   EXPECT_EQ(Bytes(Step(0)), Bytes(before));
   EXPECT_TRUE(Step(1).ok);
   EXPECT_EQ(server_.run_id(), kRun);
@@ -401,7 +435,7 @@ TEST_F(WagonServerTest, StartsAnotherRunWhenNobodyDrivesThePresentOne) {
   ConfigureRequest other = ConfigureFor(scenario_);
   other.run_id = kOtherRun;
   ASSERT_TRUE(Configure(other, false).ok);
-  ExpectRefused(StepFor(scenario_, 1), "run 17 is not known here: this wagon node is in run 18");
+  ExpectRefused(StepFor(scenario_, 1), "run 17 is not known here: this wagon node is in another run");
   StepRequest step = StepFor(scenario_, 0);
   step.run_id = kOtherRun;
   EXPECT_TRUE(server_.Step(step).ok);

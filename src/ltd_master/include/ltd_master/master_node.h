@@ -42,7 +42,6 @@ struct MasterOptions {
   double recovery_timeout_s = 60.0;
   int blocking_threads = 0;  ///< 0 = asynchronous fan-out
   bool shared_memory = true;
-  std::string exit_status_file;
 
   /// @throws std::invalid_argument naming the parameter
   static MasterOptions FromParameters(const ros::NodeHandle& parameters);

@@ -9,6 +9,7 @@
 
 #include "train_dynamics/train/lockstep.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/scenario.h"
 
 namespace ltd_master {
 
@@ -21,7 +22,7 @@ std::string ExchangeText(std::uint64_t exchange);
 class RankMessages {
  public:
   RankMessages(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id,
-               const std::string& scenario_text);
+               const train_dynamics::ScenarioParams& scenario);
 
   std::vector<train_brake_msgs::Configure> configure;  ///< [rank]
   std::vector<train_brake_msgs::Step> step;            ///< [rank]
@@ -39,6 +40,7 @@ class RankMessages {
 
  private:
   std::vector<train_dynamics::Rank> ranks_;
+  bool is_two_d_;
 };
 
 }  // namespace ltd_master

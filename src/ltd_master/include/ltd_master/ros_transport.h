@@ -13,6 +13,7 @@
 #include "ltd_master/recovery_log.h"
 #include "train_dynamics/train/lockstep.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/scenario.h"
 
 namespace ltd_master {
 
@@ -20,11 +21,11 @@ class RankCaller;
 class RankMessages;
 
 struct RosTransportOptions {
-  double start_timeout_s = 60.0;            ///< for all ranks to come up, and to be configured; 0: for ever
-  double exchange_deadline_s = 30.0;        ///< for all replies of an exchange; 0: for ever
-  int blocking_threads = 0;                 ///< 0: asynchronous; else see MakeBlockingCaller
-  bool recover = true;                      ///< bring lost ranks back; false: the run ends with them
-  double recovery_timeout_s = 60.0;         ///< for a lost rank to come back; 0: for ever
+  double start_timeout_s = 60.0;      ///< for all ranks to come up, and to be configured; 0: for ever
+  double exchange_deadline_s = 30.0;  ///< for all replies of an exchange; 0: for ever
+  int blocking_threads = 0;           ///< 0: asynchronous; else see MakeBlockingCaller
+  bool recover = true;                ///< bring lost ranks back; false: the run ends with them
+  double recovery_timeout_s = 60.0;   ///< for each lost rank, one after the other, to come back; 0: for ever
   std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
   bool shared_memory = true;                ///< with ranks on the same machine; only asynchronous
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
@@ -58,11 +59,10 @@ struct ExchangeTiming {
 /// The connections last as long as the transport. Their end tells the wagon nodes that the run is over.
 class RosTransport : public train_dynamics::Transport {
  public:
-  /// @param ranks          their names are resolved in this node's namespace
-  /// @param run_id         unlike that of any other run; not 0
-  /// @param scenario_text  config::Write(scenario)
+  /// @param ranks   their names are resolved in this node's namespace
+  /// @param run_id  unlike that of any other run; not 0
   RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_t run_id,
-               const std::string& scenario_text, RosTransportOptions options);
+               const train_dynamics::ScenarioParams& scenario, RosTransportOptions options);
   ~RosTransport() override;
 
   void Start(train_dynamics::ExchangeReply& reply) override;
@@ -83,8 +83,7 @@ class RosTransport : public train_dynamics::Transport {
   void Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
                const std::function<void(int rank)>& catch_up);
   /// Tries nodes of a lost rank's name until one of them has caught up.
-  void BringBack(const LostRank& lost, const std::string& when, Clock::time_point start,
-                 const std::function<void()>& catch_up);
+  void BringBack(const LostRank& lost, const std::string& when, const std::function<void()>& catch_up);
   void Reconfigure(int rank);
   void Replay(int rank);
   void StepOne(int rank, train_brake_msgs::Step& call);

@@ -17,11 +17,13 @@ namespace wagon_node {
 ///   Configure   | starts the run | k = 0 or `again`: starts again;           | refused while A is driven,
 ///               |                | else refused                              | else starts the other run
 ///   Step k      | refused        | moves the vehicles                        | refused
-///   Step k - 1  | refused        | the same reply again, nothing moves       | refused
+///   Step k - 1  | refused        | the same reply again, nothing moves;      | refused
+///               |                | with other inputs refused                 |
 ///   other Step  | refused        | refused, with both numbers                | refused
 ///
 /// A refusal is a reply with ok = false and a message for people; it leaves the run and its vehicles as they
-/// are. What else is refused, and in which order, is in the services' comments.
+/// are; it does not tell the run's id, which only its master shall know. What else is refused, and in which
+/// order, is in the services' comments.
 class WagonServer {
  public:
   /// @param threads  that share the vehicles; any number gives the same bits
