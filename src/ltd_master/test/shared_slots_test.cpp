@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -51,7 +52,7 @@ class Process {
     Write(call(), StepResponse());
     auto* letter = reinterpret_cast<std::uint8_t*>(&memory_.reply(slot));
     std::memcpy(letter + sizeof(std::uint64_t), &size, sizeof size);
-    std::memcpy(letter + train_brake_msgs::Letter::Size(0), bytes.data(), bytes.size());
+    std::copy(bytes.begin(), bytes.end(), letter + train_brake_msgs::Letter::Size(0));
     Ring();
   }
   std::uint32_t reply_room() const { return memory_.layout().reply_room; }
