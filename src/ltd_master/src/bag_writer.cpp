@@ -130,22 +130,20 @@ BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
   reader.End();
   kept_chunks_ = chunks_.size();
 
-  const std::string active = file + ".active";
-  const std::string& found = std::filesystem::exists(file) ? file : active;
+  const std::string found = std::filesystem::exists(file) ? file : file + ".active";
   AddToDigest(found, kFileStart, size_, digest_);
   if (digest_.value() != digest) {
     throw std::invalid_argument(found + " is not the bag that the checkpoint is of, or it is damaged");
   }
-  descriptor_ = open(found.c_str(), O_WRONLY | O_CLOEXEC);
+}
+
+void BagWriter::GoOn() {
+  const std::string active = file_ + ".active";
+  if (std::filesystem::exists(file_)) std::filesystem::rename(file_, active);
+  descriptor_ = open(active.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) Fail();
-  try {
-    if (found != active) std::filesystem::rename(found, active);
-    Truncate();
-    WriteFileHeader(0, 0);
-  } catch (...) {
-    close(descriptor_);
-    throw;
-  }
+  Truncate();
+  WriteFileHeader(0, 0);
 }
 
 Bytes BagWriter::Checkpoint() {

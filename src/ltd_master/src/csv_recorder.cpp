@@ -49,7 +49,7 @@ CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
 }
 
 CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint, int vehicles)
-    : folder_(folder) {
+    : folder_(folder), vehicles_(vehicles) {
   ByteReader reader(checkpoint);
   const auto check = [&](const std::string& name) {
     const std::uint64_t size = reader.Word(), value = reader.Word();
@@ -71,14 +71,16 @@ CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& check
     wagons_.emplace(static_cast<int>(vehicle), std::ofstream());
   }
   reader.End();
+}
 
+void CsvRecorder::GoOn() {
   const auto go_on = [&](const std::string& name) {
-    std::filesystem::resize_file(folder / name, digests_[name].size());
-    return std::ofstream(folder / name, std::ios::app);
+    std::filesystem::resize_file(folder_ / name, digests_[name].size());
+    return std::ofstream(folder_ / name, std::ios::app);
   };
   history_ = go_on(kHistory);
   pressures_ = go_on(kPressures);
-  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles));
+  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles_));
 }
 
 Bytes CsvRecorder::Checkpoint() {
@@ -96,13 +98,14 @@ Bytes CsvRecorder::Checkpoint() {
   writer.Add(std::uint64_t{wagons_.size()});
   for (auto& [vehicle, stream] : wagons_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
-    add(stream, WagonTable(vehicle, static_cast<int>(speed_mps_.size())));
+    add(stream, WagonTable(vehicle, vehicles_));
   }
   return writer.bytes();
 }
 
 void CsvRecorder::Record(const TrainRecord& record) {
   const std::vector<double>& speed = record.vehicles.speed_mps;
+  vehicles_ = static_cast<int>(speed.size());
   const std::vector<double>& force = record.coupler_force_n;
   const auto mean = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
@@ -122,7 +125,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
   pressures_ << '\n';
 
   for (const WagonDetail& detail : record.vehicles.details) {
-    if (record.exchange == 0) OpenWagon(detail.vehicle, static_cast<int>(speed.size()));
+    if (wagons_.count(detail.vehicle) == 0) OpenWagon(detail.vehicle);
     std::ofstream& wagon = wagons_.at(detail.vehicle);
     fmt::print(wagon, "{:.6f},{:.9g}", record.time_s, speed[detail.vehicle]);
     Row(wagon, detail.output.normal_force_n);
@@ -141,8 +144,8 @@ void CsvRecorder::Record(const TrainRecord& record) {
   CheckAll();
 }
 
-void CsvRecorder::OpenWagon(int vehicle, int vehicles) {
-  std::ofstream wagon = Open(folder_ / WagonTable(vehicle, vehicles));
+void CsvRecorder::OpenWagon(int vehicle) {
+  std::ofstream wagon = Open(folder_ / WagonTable(vehicle, vehicles_));
   fmt::print(wagon, "time_s,speed_mps");
   for (const char* quantity : {"normal_force_{}_n", "creepage_{}", "creep_force_{}_n", "shoe_force_{}_n"}) {
     for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {

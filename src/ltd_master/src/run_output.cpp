@@ -154,12 +154,14 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
     train_dynamics::ByteReader checkpoint(run.checkpoint.output);
     const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
     const int vehicles = run.scenario.consist.vehicles();
-    // Each looks at what it goes on with before it changes anything.
     if (!csv.empty()) csv_ = std::make_unique<CsvRecorder>(folder_, csv, vehicles);
     if (!bag.empty()) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), bag, vehicles);
   } catch (const train_dynamics::SnapshotError& e) {
     throw std::invalid_argument((run.folder / kCheckpointFile).string() + " " + e.what());
   }
+  // Both have seen that they can: nothing was changed before.
+  if (csv_ != nullptr) csv_->GoOn();
+  if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
   for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
   StartThread();

@@ -187,7 +187,9 @@ TEST_F(BagWriterTest, WhatACheckpointIsOfMakesRoomForNothing) {
   }
   EXPECT_FALSE(fs::exists(File("run.bag")));
   EXPECT_EQ(size, fs::file_size(File("run.bag.active")));
-  BagWriter(File("run.bag"), checkpoint).Close();  // there is room again
+  BagWriter bag(File("run.bag"), checkpoint);
+  bag.GoOn();
+  bag.Close();  // there is room again
   EXPECT_EQ(kMessages, Readable(File("run.bag")));
 }
 

@@ -216,6 +216,15 @@ class ResumeTest(unittest.TestCase):
         self.refused("train.bag.active does not exist", "--resume", self.out)
         self.assertTrue((self.out / "summary.json").exists())
 
+    def test_tables_keep_their_rows_when_the_bag_is_refused(self):
+        self.break_off(signal.SIGKILL, "--csv")
+        with open(self.out / "train_history.csv", "a", encoding="utf-8") as table:
+            table.write("a row behind the checkpoint\n")
+        with open(self.out / "train.bag.active", "r+b") as bag:
+            bag.seek(100000)
+            bag.write(b"something else")
+        self.refused("train.bag.active is not the bag that the checkpoint is of", "--resume", self.out)
+
     def test_what_never_ends_is_not_read(self):
         shutil.copytree(self.whole, self.out)
         checkpoint = self.out / "checkpoint"

@@ -17,8 +17,9 @@ class BagRecorder {
   /// @throws std::system_error if the file cannot be made
   BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
 
-  /// Goes on with a bag that a checkpoint is of, see BagWriter.
+  /// Is to go on with a bag that a checkpoint is of, and does so at GoOn, see BagWriter.
   BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint, int vehicles);
+  void GoOn() { bag_.GoOn(); }
   train_dynamics::Bytes Checkpoint();
 
   /// An observer of the run's TrainMaster. @throws std::system_error

@@ -25,10 +25,12 @@ class BagWriter {
  public:
   /// @throws std::system_error if the file cannot be made
   explicit BagWriter(const std::string& file);
-  /// Goes on with a bag that a checkpoint is of, FILE or FILE.active; what came after that is cut off.
-  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then (the bag
-  ///         stays untouched); std::system_error
+  /// Is to go on with a bag that a checkpoint is of, FILE or FILE.active. Only looks at it: see GoOn.
+  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then
   BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
+  /// Opens that bag and cuts off what came after the checkpoint; before that nothing can be written.
+  /// @throws std::system_error
+  void GoOn();
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;

@@ -20,9 +20,12 @@ namespace ltd_master {
 class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
-  /// Goes on with tables that a checkpoint is of; what came after that is cut off.
-  /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were (they stay untouched)
+  /// Is to go on with tables that a checkpoint is of. Only looks at them: see GoOn.
+  /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were
   CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint, int vehicles);
+  /// Opens those tables and cuts off what came after the checkpoint; before that nothing can be written.
+  /// @throws std::filesystem::filesystem_error
+  void GoOn();
   train_dynamics::Bytes Checkpoint();
 
   /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
@@ -32,10 +35,11 @@ class CsvRecorder {
   void Close(const train_dynamics::TrainMaster& master);
 
  private:
-  void OpenWagon(int vehicle, int vehicles);
+  void OpenWagon(int vehicle);
   void CheckAll() const;
 
   std::filesystem::path folder_;
+  int vehicles_ = 0;  ///< of the train, once a record or a checkpoint told
   std::ofstream history_, pressures_;
   std::map<int, std::ofstream> wagons_;
   std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
