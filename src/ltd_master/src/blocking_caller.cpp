@@ -9,6 +9,7 @@
 #include <functional>
 #include <mutex>
 #include <numeric>
+#include <system_error>
 #include <thread>
 
 #include "ltd_master/rank_caller.h"
@@ -23,18 +24,15 @@ class BlockingCaller : public RankCaller {
   BlockingCaller(const std::vector<Rank>& ranks, int threads)
       : ranks_(ranks), configure_(ranks.size()), step_(ranks.size()) {
     const int size = std::clamp(threads, 1, static_cast<int>(ranks.size()));
-    for (int i = 0; i < size; ++i) threads_.emplace_back(&BlockingCaller::Work, this);
+    try {
+      for (int i = 0; i < size; ++i) threads_.emplace_back(&BlockingCaller::Work, this);
+    } catch (const std::system_error&) {
+      End();
+      throw;
+    }
   }
 
-  ~BlockingCaller() override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      ending_ = true;
-    }
-    start_.notify_all();
-    for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank) BreakOff(rank);
-    for (std::thread& thread : threads_) thread.join();
-  }
+  ~BlockingCaller() override { End(); }
 
   std::string Connect(int rank) override {
     const std::string& name = ranks_[rank].name;
@@ -64,6 +62,16 @@ class BlockingCaller : public RankCaller {
 
  private:
   using RankCall = std::function<bool(int rank)>;
+
+  void End() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ending_ = true;
+    }
+    start_.notify_all();
+    for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank) BreakOff(rank);
+    for (std::thread& thread : threads_) thread.join();
+  }
 
   template <class Service>
   bool Connect(const std::string& service, ros::ServiceClient& client) {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <thread>
 
 #include "ltd_master/run_command.h"
 #include "ltd_master/run_prediction.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/exchange_stability.h"
+#include "train_dynamics/train/thread_team.h"
 
 namespace ltd_master {
 namespace {
@@ -29,8 +29,6 @@ template <class... Values>
 void Line(const char* name, const char* format, const Values&... values) {
   fmt::print("  {:<10} {}\n", name, fmt::format(fmt::runtime(format), values...));
 }
-
-int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 double FreeMemory() {
   return static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -132,7 +130,8 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
   if (options.nodes > vehicles) {
     warn(fmt::format("the train has {} vehicles; take at most as many nodes", vehicles));
   }
-  const int per_machine = (options.nodes + options.machines - 1) / options.machines, cores = Cores();
+  const int per_machine = (options.nodes + options.machines - 1) / options.machines,
+            cores = train_dynamics::UsableCores();
   if (per_machine > cores) {
     constexpr double kCoreTime =
         90e-6;  // [s] of a node's exchange: 10.9 ms for 242 on two cores (docs/lockstep.md)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "ltd_master/interrupt.h"
@@ -14,6 +13,7 @@
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/run_summary.h"
+#include "train_dynamics/train/thread_team.h"
 
 namespace ltd_master {
 namespace {
@@ -40,9 +40,8 @@ LoadedScenario Load(const RunOptions& options) {
 }  // namespace
 
 int Threads(int asked, const LoadedScenario& scenario) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return train_dynamics::UsefulThreads(scenario.params.model, scenario.consist.vehicles(),
-                                       asked > 0 ? asked : cores);
+                                       asked > 0 ? asked : train_dynamics::UsableCores());
 }
 
 namespace {

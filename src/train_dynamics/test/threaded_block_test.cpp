@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <chrono>
 #include <string>
@@ -25,6 +26,17 @@ TEST(ThreadTeam, RunsEveryTaskOnceInEveryRound) {
       ASSERT_EQ(std::vector<int>(size, round), calls);
     }
   }
+}
+
+TEST(UsableCores, AreThoseThatTheSystemAllows) {
+  cpu_set_t before, one;
+  ASSERT_EQ(0, sched_getaffinity(0, sizeof before, &before));
+  EXPECT_EQ(CPU_COUNT(&before), UsableCores());
+  CPU_ZERO(&one);
+  CPU_SET(sched_getcpu(), &one);
+  ASSERT_EQ(0, sched_setaffinity(0, sizeof one, &one));
+  EXPECT_EQ(1, UsableCores());
+  ASSERT_EQ(0, sched_setaffinity(0, sizeof before, &before));
 }
 
 TEST(UsefulThreads, AreNoMoreThanTheVehiclesAreWorth) {

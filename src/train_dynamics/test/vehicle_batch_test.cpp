@@ -40,6 +40,26 @@ struct Arrays {
   }
 };
 
+/// What a batch records of its vehicles against the law for one of them, bit for bit.
+template <class Vehicle, class State, class Output>
+void ExpectRecords(const VehicleBatch<Vehicle>& batch, const std::vector<State>& states,
+                   const std::vector<Output>& outputs) {
+  constexpr int kQuantities = 7;
+  std::vector<double> a[kQuantities];
+  for (std::vector<double>& quantity : a) quantity.assign(kVehicles + 1, -1.0);
+  batch.Record({a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(), a[6].data()});
+  for (int i = 0; i < kVehicles; ++i) {
+    const VehicleRecord<double> one = RecordOf(batch.vehicle(), states[i], outputs[i]);
+    const double expected[kQuantities] = {
+        one.head_displacement_m, one.head_velocity_mps, one.position_m, one.speed_mps,
+        one.shoe_force_n,        one.wheel_force_n,     one.creepage};
+    for (int q = 0; q < kQuantities; ++q) {
+      EXPECT_EQ(ToBits(expected[q]), ToBits(a[q][i])) << "vehicle " << i << ", quantity " << q;
+    }
+  }
+  for (const std::vector<double>& quantity : a) EXPECT_EQ(-1.0, quantity[kVehicles]);
+}
+
 class LaneKernelsTest : public testing::TestWithParam<LaneKernels> {
  protected:
   static std::vector<WagonState<double>> Wagons(const Wagon& wagon) {
@@ -82,6 +102,34 @@ TEST_P(LaneKernelsTest, MoveEachWagonAsTheScalarStepDoes) {
   EXPECT_EQ(arrays.velocity_mps[kVehicles], -1.0);  // what is behind the batch is somebody else's
 }
 
+TEST_P(LaneKernelsTest, RecordWhatTheScalarLawDoesWhileWheelsRollAndSlide) {
+  for (const bool slides : {false, true}) {
+    VehicleParams params = OreWagon();
+    if (slides) params.wheel_rail.adhesion.friction_coefficient = 0.02;
+    const Wagon wagon(params);
+    std::vector<WagonState<double>> states = Wagons(wagon);
+    for (int i = 0; slides && i < kVehicles; ++i) {
+      for (int w = 0; w < kWheelsets; ++w) states[i].velocity.pitch[kWheelset1 + w] = 0.0;
+    }
+    std::vector<WagonOutput<double>> outputs(kVehicles);
+    WagonBatch batch(wagon, GetParam(), states);
+    Arrays arrays;
+    arrays.pressure_pa.assign(kVehicles, 300e3);
+    for (int exchange = 0; exchange < 300; ++exchange) {
+      for (int i = 0; i < kVehicles; ++i) {
+        for (int step = 0; step < 5; ++step) StepWagon(wagon, {}, arrays.Of(i), 1e-3, states[i], &outputs[i]);
+      }
+      ASSERT_TRUE(batch.Advance({}, 1e-3, 5, arrays.Pointers(), true));
+    }
+    for (const WagonState<double>& state : states) {
+      ASSERT_GT(state.velocity.x[kCarbody], 1.0);
+      ASSERT_EQ(slides, state.velocity.pitch[kWheelset1] == 0.0);
+    }
+    ExpectRecords(batch, states, outputs);
+    if (HasFailure()) return;
+  }
+}
+
 TEST_P(LaneKernelsTest, MoveEachLtdVehicleAsTheScalarStepDoes) {
   TrackParams hills;
   hills.grades = {{0.0, -1.0}, {30.0, 0.7}, {60.0, -0.4}};
@@ -109,6 +157,7 @@ TEST_P(LaneKernelsTest, MoveEachLtdVehicleAsTheScalarStepDoes) {
         ASSERT_EQ(states[i].work.gravity, batch.StateOf(i).work.gravity);
         ASSERT_EQ(outputs[i].shoe_force_n, batch.OutputOf(i).shoe_force_n);
       }
+      if (exchange % 100 == 0) ExpectRecords(batch, states, outputs);
     }
   }
 }

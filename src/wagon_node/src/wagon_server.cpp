@@ -175,13 +175,13 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
   response = ConfigureResponse();
   response.protocol_version = ConfigureRequest::PROTOCOL_VERSION;
   response.scenario_digest = train_dynamics::TextDigest(request.scenario);
-  response.threads = static_cast<std::uint32_t>(threads_);
   try {
     std::unique_ptr<Run> run = Begin(request, driven, response.scenario_digest);
     run->vehicles.Report(0, true, run->state);
     response.head_displacement_m = run->state.head_displacement_m;
     response.head_velocity_mps = run->state.head_velocity_mps;
     run->Fill(true, response.record);
+    response.threads = static_cast<std::uint32_t>(run->vehicles.threads());
     response.ok = true;
     response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) +
                        ", scenario " + run->scenario.name + ", run " + Text(run->id);

@@ -6,10 +6,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/thread_team.h"
 
 namespace ltd_master {
 
@@ -59,7 +59,7 @@ class SharedSlots {
   std::vector<RankSlot> ranks_;
   std::uint32_t next_slot_ = 0;  ///< that nobody has had
   std::uint64_t call_ = 0;       ///< number of the present one
-  const unsigned cores_ = std::thread::hardware_concurrency();
+  const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
   train_brake_msgs::Vigil vigil_;
   std::uint32_t heard_ = 0;  ///< rings of the bell for replies
 };

@@ -1,5 +1,11 @@
 #include "train_dynamics/train/thread_team.h"
 
+#include <sched.h>
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+
 namespace train_dynamics {
 namespace {
 
@@ -15,11 +21,25 @@ bool Spin(const Condition& done) {
 
 }  // namespace
 
-ThreadTeam::ThreadTeam(int size) {
-  for (int member = 1; member < size; ++member) threads_.emplace_back(&ThreadTeam::Work, this, member);
+int UsableCores() {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return std::max(
+      1, static_cast<int>(std::thread::hardware_concurrency()));  // more cores than the set has room for
 }
 
-ThreadTeam::~ThreadTeam() {
+ThreadTeam::ThreadTeam(int size) {
+  try {
+    for (int member = 1; member < size; ++member) threads_.emplace_back(&ThreadTeam::Work, this, member);
+  } catch (const std::system_error& e) {
+    End();
+    throw std::system_error(e.code(), "cannot start " + std::to_string(size) + " threads");
+  }
+}
+
+ThreadTeam::~ThreadTeam() { End(); }
+
+void ThreadTeam::End() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;

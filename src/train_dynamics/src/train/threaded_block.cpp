@@ -1,6 +1,7 @@
 #include "train_dynamics/train/threaded_block.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "train_dynamics/train/thread_team.h"
 #include "train_dynamics/vehicle/lane_kernels.h"
@@ -30,11 +31,7 @@ bool ThreadedBlock::Advance(const ExchangeRequest& request, int offset, Exchange
     Share& share = shares_[member];
     share.sound = share.block->Advance(request, offset + share.first, reply);
   };
-  if (shares_.size() == 1) {
-    advance(0);  // a task for the team takes memory, which a process of a single vehicle notices
-  } else {
-    team_->Run(advance);
-  }
+  team_->Run(std::ref(advance));  // by reference: a copy would be allocated
   return std::all_of(shares_.begin(), shares_.end(), [](const Share& share) { return share.sound; });
 }
 

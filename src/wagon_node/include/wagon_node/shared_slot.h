@@ -5,7 +5,8 @@
 #include <train_brake_msgs/exchange_memory.h>
 
 #include <cstdint>
-#include <thread>
+
+#include "train_dynamics/train/thread_team.h"
 
 namespace wagon_node {
 
@@ -28,7 +29,7 @@ class SharedSlot {
  private:
   train_brake_msgs::ExchangeMemory memory_;
   const std::uint32_t slot_;
-  const unsigned cores_ = std::thread::hardware_concurrency();
+  const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
   train_brake_msgs::Vigil vigil_;
   std::uint64_t served_;  ///< number of the last call that was read
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 
@@ -18,6 +19,9 @@
 /// Every function returns in each lane the bits that the double version returns. That holds for NaN too
 /// (except for its sign and payload, which no rule of the language fixes).
 namespace train_dynamics {
+
+static_assert(FLT_EVAL_METHOD == 0,
+              "double must be computed as double: x87 would give other bits than lanes do");
 
 /// The types that belong to T.
 template <class T>

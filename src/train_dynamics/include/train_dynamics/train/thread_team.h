@@ -9,6 +9,9 @@
 
 namespace train_dynamics {
 
+/// The cores that this process may use, at least 1: those of the machine, or fewer (taskset, a batch system).
+int UsableCores();
+
 /// A fixed team of threads that runs the same task side by side, thousands of times a second.
 ///
 /// Waiting spins for about 0.1 ms, then sleeps, so that neither a busy train nor an idle one wastes a
@@ -16,6 +19,7 @@ namespace train_dynamics {
 class ThreadTeam {
  public:
   /// @param size  the caller's thread included, >= 1
+  /// @throws std::system_error if the system gives no more threads
   explicit ThreadTeam(int size);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
@@ -27,6 +31,7 @@ class ThreadTeam {
 
  private:
   void Work(int member);
+  void End();
 
   const std::function<void(int)>* task_ = nullptr;
   std::atomic<unsigned> round_{0};  ///< raised by one to start a round

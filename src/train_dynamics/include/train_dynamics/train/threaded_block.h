@@ -23,6 +23,8 @@ class ThreadedBlock : public VehicleBlock {
   ThreadedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count, int threads);
   ~ThreadedBlock() override;
 
+  int threads() const { return static_cast<int>(shares_.size()); }  ///< in use
+
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override;
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override;
   int NumbersPerVehicle() const override { return shares_.front().block->NumbersPerVehicle(); }
