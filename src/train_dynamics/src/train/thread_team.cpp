@@ -9,7 +9,7 @@
 namespace train_dynamics {
 namespace {
 
-constexpr int kSpins = 100000;  // about 0.1 ms: longer than what the caller does between two rounds
+constexpr int kSpins = 100000;  // some 0.1 ms: longer than what the caller does between two rounds
 
 template <class Condition>
 bool Spin(const Condition& done) {
