@@ -1,5 +1,6 @@
 // What this machine's core can do at most in the widest registers. Run/OPERATION: each by itself, nothing waiting for
 // anything, time per operation on one number. Stream/WAGONS: read and write the states of so many wagons, no more.
+// Cycle: one of the core's clock.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -51,6 +52,24 @@ void Stream(benchmark::State& state) {
   ShowTimePerVehicleStep(state, static_cast<int>(wagons));
 }
 BENCHMARK(Stream)->Arg(242)->Arg(2000);
+
+/// A chain of additions, each of which needs the sum before: one in a cycle.
+void Cycle(benchmark::State& state) {
+  constexpr int kUnrolled = 16;
+  long sum = 0, summand = 1;
+  for (auto _ : state) {
+    for (int round = 0; round < kRounds; ++round) {
+#pragma GCC unroll 16
+      for (int i = 0; i < kUnrolled; ++i) {
+        sum += summand;
+        asm volatile("" : "+r"(sum), "+r"(summand));  // neither compiler nor core knows the sum beforehand
+      }
+    }
+  }
+  state.counters["s_per_cycle"] = benchmark::Counter(
+      1.0 * kUnrolled * kRounds, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(Cycle);
 
 }  // namespace
 }  // namespace train_dynamics::bench
