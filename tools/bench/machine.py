@@ -40,5 +40,11 @@ def describe():
     ]
 
 
+def lanes():
+    """Numbers in a register of the widest set: vehicles of a pack."""
+    sets = dict(describe())["instruction sets"]
+    return 8 if "AVX-512" in sets else 4 if "AVX2" in sets else 2
+
+
 def cores():
     return len(re.findall(r"^processor\s*:", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE))

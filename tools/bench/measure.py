@@ -16,7 +16,7 @@ class Failed(Exception):
 
 
 class Run:
-    """One process, from start to exit: wall_s, cpu_s, peak_bytes, stdout."""
+    """One process, from start to exit: wall_s, cpu_s, stdout."""
 
     def __init__(self, command, timeout_s=600):
         with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
@@ -27,7 +27,6 @@ class Run:
             self.wall_s = time.monotonic() - begin
             process.returncode = os.waitstatus_to_exitcode(status)
             self.cpu_s = usage.ru_utime + usage.ru_stime
-            self.peak_bytes = 1024 * usage.ru_maxrss
             out.seek(0)
             err.seek(0)
             self.stdout = out.read()
@@ -73,9 +72,22 @@ def in_turn(times, *actions):
     return results
 
 
+def ratios(of, to):
+    """Pair by pair."""
+    return [a / b for a, b in zip(of, to)]
+
+
 def ratio(of, to):
     """Median of the ratios pair by pair."""
-    return median([a / b for a, b in zip(of, to)])
+    return median(ratios(of, to))
+
+
+def peak_bytes(helper, command):
+    """The most memory that a program has. Not wait4's, which begins with that of this Python.
+
+    @param helper  the program peak_memory
+    """
+    return int(Run([helper, *command]).stdout.splitlines()[-1])
 
 
 def google_benchmark(program, repetitions=3, min_time_s=0.2):

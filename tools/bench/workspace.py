@@ -4,6 +4,8 @@ import os
 import pathlib
 import shutil
 import socket
+import subprocess
+import sys
 import tempfile
 import time
 
@@ -26,14 +28,32 @@ def bench(name):
     return measure.google_benchmark(program("train_dynamics", name))
 
 
-def train_sim(*arguments, settings=(), scenario=EMERGENCY):
-    """Runs a scenario; the Run, with its summary."""
-    command = [program("ltd_master", "train_sim"), "run", scenario, *arguments]
-    for setting in settings:
-        command += ["--set", setting]
-    run = measure.Run(command)
+def commit():
+    """What has been measured: the commit, -dirty if a file of it but the page has changed since."""
+    def git(*arguments):
+        return subprocess.run(["git", "-C", ROOT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              text=True, check=True).stdout.strip()
+    try:
+        changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/performance.md")
+        return git("rev-parse", "--short=12", "HEAD") + ("-dirty" if changed else "")
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"  # sources without their history
+
+
+def _train_sim(arguments, settings):
+    return [program("ltd_master", "train_sim"), "run", EMERGENCY, *arguments,
+            *(word for setting in settings for word in ("--set", setting))]
+
+
+def train_sim(*arguments, settings=()):
+    """Runs the emergency stop; the Run, with its summary."""
+    run = measure.Run(_train_sim(arguments, settings))
     run.summary = json.loads(run.stdout)
     return run
+
+
+def peak_bytes_of_train_sim(*arguments, settings=()):
+    return measure.peak_bytes(program("train_dynamics", "peak_memory"), _train_sim(arguments, settings))
 
 
 def train_sim_into(folder, *arguments, **options):
@@ -72,12 +92,18 @@ def per_exchange_s(summary):
 
 
 def mpi_train(ranks, settings):
-    """The same exchange over MPI; what it printed, or None without MPI."""
-    if shutil.which("mpirun") is None or not (PROGRAMS / "train_dynamics" / "mpi_train").exists():
+    """The same exchange over MPI; what it printed, or None without an MPI that works."""
+    global _mpi_works
+    if not _mpi_works or shutil.which("mpirun") is None or not (PROGRAMS / "train_dynamics" / "mpi_train").exists():
         return None
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    run = measure.Run(["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", ranks + 1,
-                       program("train_dynamics", "mpi_train"), EMERGENCY, *settings])
+    try:
+        run = measure.Run(["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", ranks + 1,
+                           program("train_dynamics", "mpi_train"), EMERGENCY, *settings], timeout_s=120)
+    except measure.Failed as failure:  # another MPI than Open MPI has other options
+        print(f"No MPI from here on: {failure}", file=sys.stderr)
+        _mpi_works = False
+        return None
     return json.loads(run.stdout)
 
 
