@@ -9,46 +9,66 @@ WAYS = {  # how the master calls wagon nodes: arguments of train.launch
     "TCP": ["shared_memory:=false"],
     "blocking client": ["client:=blocking"],
 }
+PAIRED = "shared memory"                   # beside MPI at any number of ranks; the first of WAYS
 BLOCKING_RANKS = (2, workspace.VEHICLES)  # where that one is measured
+MANY_RANKS = 100
 
 
 def run():
-    cost = {}    # (way, ranks): seconds per exchange
+    cost = {}    # (way, ranks): seconds per exchange, of every run
     ends = {}    # ranks: (start, stop) in seconds
     digests = set()
     for ranks, exchanges in EXCHANGES.items():
         settings = [f"duration_s={exchanges / 1000:g}"]
         ways = [way for way in WAYS if way != "blocking client" or ranks in BLOCKING_RANKS]
-        *launches, mpi = measure.in_turn(
-            2 if ranks < 100 else 1,  # to start and end hundreds of processes takes most of the time
-            *[lambda way=way: workspace.Launch(ranks, *WAYS[way], settings=settings) for way in ways],
-            lambda: workspace.mpi_train(ranks, settings))
-        for way, of_way in zip(ways, launches):
-            cost[way, ranks] = measure.median([launch.per_exchange_s() for launch in of_way])
+        launches = [lambda way=way: workspace.Launch(ranks, *WAYS[way], settings=settings) for way in ways]
+        *of_ways, mpi = _in_turn(ranks, launches, lambda: workspace.mpi_train(ranks, settings))
+        for way, of_way in zip(ways, of_ways):
+            cost[way, ranks] = [launch.per_exchange_s() for launch in of_way]
             digests |= {(ranks, launch.summary["state_digest"]) for launch in of_way}
-        if mpi[0] is not None:
-            cost["MPI", ranks] = measure.median([run["wall_s"] / run["exchanges"] for run in mpi])
+        if None not in mpi:
+            cost["MPI", ranks] = [run["wall_s"] / run["exchanges"] for run in mpi]
             digests |= {(ranks, run["state_digest"]) for run in mpi}
-        ends[ranks] = [measure.median([getattr(launch, end) for launch in launches[0]])
+        ends[ranks] = [measure.median([getattr(launch, end) for launch in of_ways[0]])
                        for end in ("start_s", "stop_s")]
     if len(digests) != len(EXCHANGES):
         raise measure.Failed(f"the digests differ between the ways to call the ranks: {sorted(digests)}")
 
     columns = [str(ranks) for ranks in EXCHANGES]
     rows = [(way, *[number(_ms(cost.get((way, ranks)))) for ranks in EXCHANGES]) for way in [*WAYS, "MPI"]]
-    rows += [(f"{way} to MPI", *[times(_to_mpi(cost, way, ranks)) for ranks in EXCHANGES]) for way in WAYS]
+    for way in WAYS:
+        ratios = [_to_mpi(cost, way, ranks) for ranks in EXCHANGES]
+        rows.append((f"{way} to MPI", *[times(r and measure.median(r)) for r in ratios]))
+        if way == PAIRED:
+            rows.append(("from ... to", *[f"{number(min(r))} ... {number(max(r))}" if r else "-" for r in ratios]))
     table = Table("ranks; wall time of an exchange [ms]", columns, rows)
     starts = Table("nodes; launch [s]", columns, [
         ("until the run begins", *[number(ends[ranks][0]) for ranks in EXCHANGES]),
         ("from its end to that of roslaunch", *[number(ends[ranks][1]) for ranks in EXCHANGES])])
-    return [table, starts], {"to_mpi_242": _to_mpi(cost, "shared memory", workspace.VEHICLES)}
+    to_mpi = _to_mpi(cost, PAIRED, workspace.VEHICLES)
+    return [table, starts], {"to_mpi_242": to_mpi and measure.median(to_mpi),
+                             "242_ms": _ms(cost[PAIRED, workspace.VEHICLES])}
+
+
+def _in_turn(ranks, launches, mpi):
+    """Results of all launches and of MPI, in turn.
+
+    To start and end hundreds of processes takes most of the time: of many ranks only the first way is measured beside
+    MPI, in turn and more often, because MPI's times scatter then; the others once.
+    """
+    if ranks < MANY_RANKS:
+        return measure.in_turn(2, *launches, mpi)
+    first, of_mpi = measure.in_turn(3, launches[0], mpi)
+    return [first, *measure.in_turn(1, *launches[1:]), of_mpi]
 
 
 def _ms(seconds):
-    return None if seconds is None else 1e3 * seconds
+    return None if seconds is None else 1e3 * measure.median(seconds)
 
 
 def _to_mpi(cost, way, ranks):
+    """Ratios pair by pair; of medians where the runs are no pairs; None without both."""
     if (way, ranks) not in cost or ("MPI", ranks) not in cost:
         return None
-    return cost[way, ranks] / cost["MPI", ranks]
+    of, to = cost[way, ranks], cost["MPI", ranks]
+    return measure.ratios(of, to) if len(of) == len(to) else [measure.median(of) / measure.median(to)]
