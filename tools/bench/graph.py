@@ -30,5 +30,7 @@ def run():
          number(every.wall_s), times(PAPER_WALL_S / every.wall_s))]
     table = Table("emergency stop with its bag, 70 s", ["", "interval", "exchange [ms]", "run [s]", "to the paper"],
                   rows)
-    return [table], {"overhead_ms": 1e3 * (ranks_s - alone_s), "ranks_wall_s": wall_s,
-                     "every_vehicle_wall_s": every.wall_s}
+    overhead_s = measure.median([workspace.per_exchange_s(r.summary) - workspace.per_exchange_s(a.summary)
+                                 for a, r in zip(alone, ranks)])
+    return [table], {"overhead_ms": 1e3 * overhead_s, "ranks_wall_s": wall_s, "every_vehicle_wall_s": every.wall_s,
+                     "every_vehicle_ms": 1e3 * every.per_exchange_s()}
