@@ -3,7 +3,12 @@
 
 usage: bench_tools.py FOLDER_OF_PROGRAMS [--gtest_output=xml:FILE]
 """
+import contextlib
 import functools
+import importlib.util
+import io
+import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -17,7 +22,9 @@ import rosunit
 BENCH = pathlib.Path(__file__).resolve().parents[1] / "tools" / "bench"
 sys.path.insert(0, str(BENCH))
 
+import exchange  # noqa: E402
 import limit  # noqa: E402
+import machine  # noqa: E402
 import measure  # noqa: E402
 import page  # noqa: E402
 import targets  # noqa: E402
@@ -30,12 +37,22 @@ BUILT = (workspace.PROGRAMS / "train_dynamics" / "vehicle_bench").exists()
 HURRIED = functools.partial(measure.google_benchmark, repetitions=2, min_time_s=0.001)
 
 
+def bench_main():
+    """tools/bench/__main__.py: its name is this file's, too."""
+    spec = importlib.util.spec_from_file_location("bench_main", BENCH / "__main__.py")
+    main = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(main)
+    return main
+
+
 class BenchTools(unittest.TestCase):
     @unittest.skipUnless(BUILT, "the benchmarks are not built")
     @mock.patch.object(measure, "google_benchmark", HURRIED)
     def test_vehicles_names_what_the_programs_measure(self):
         tables, facts = vehicles.run()
         self.assertGreater(facts["locked_ns"], 0)
+        self.assertEqual(["ltd, 1 thread(s)"], [row[0] for row in tables[1].rows if row[0].startswith("ltd")])
+        self.assertAlmostEqual(1.0, sum(facts[fact] for fact in facts if fact.startswith("ltd_share")))
         instruction_sets = [row[0] for row in tables[0].rows]
         self.assertIn("scalar", instruction_sets)
         for table in tables:
@@ -51,12 +68,104 @@ class BenchTools(unittest.TestCase):
         self.assertEqual("measured", tables[0].rows[-1][0])
 
     @unittest.skipUnless(BUILT, "the benchmarks are not built")
+    @mock.patch.object(measure, "google_benchmark", HURRIED)
+    @mock.patch.object(limit, "_instructions", lambda: (1500, 700))
+    @mock.patch.object(shutil, "which", lambda name: name)
+    def test_limit_of_the_instructions(self):
+        tables, facts = limit.run()
+        if "issue_share" not in facts:
+            self.skipTest("no AVX2 here")
+        self.assertTrue(0 < facts["issue_share"] < 2, facts)
+        self.assertEqual(["instructions", "loads and stores", "measured, wagons alone"],
+                         [row[0] for row in tables[1].rows])
+
+    @unittest.skipUnless(BUILT, "the benchmarks are not built")
+    def test_memory_is_that_of_the_program_alone(self):
+        of_this_python = bytearray(os.urandom(1 << 20) * 100)
+        peak = measure.peak_bytes(workspace.program("train_dynamics", "peak_memory"), ["true"])
+        self.assertTrue(0.1 * 2**20 < peak < 5 * 2**20, peak)
+        self.assertLess(peak, len(of_this_python))
+        with self.assertRaisesRegex(measure.Failed, "exit code 3"):
+            measure.peak_bytes(workspace.program("train_dynamics", "peak_memory"), ["sh", "-c", "exit 3"])
+
+    @unittest.skipUnless(BUILT, "the benchmarks are not built")
     def test_mpi_gives_the_same_bits(self):
         settings = ["duration_s=0.05"]
         mpi = workspace.mpi_train(2, settings)
         if mpi is None:
             self.skipTest("MPI is not installed")
         self.assertEqual(workspace.train_sim(settings=settings).summary["state_digest"], mpi["state_digest"])
+
+    @mock.patch.object(workspace, "_mpi_works", True)
+    def test_an_mpi_that_fails_is_no_mpi(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mpirun = pathlib.Path(folder) / "mpirun"
+            mpirun.write_text("#!/bin/sh\necho no such option: --oversubscribe >&2; exit 255\n")
+            mpirun.chmod(0o755)
+            programs = pathlib.Path(folder) / "train_dynamics"
+            programs.mkdir()
+            (programs / "mpi_train").touch()
+            said = io.StringIO()
+            with mock.patch.dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}"), \
+                    mock.patch.object(workspace, "PROGRAMS", pathlib.Path(folder)), contextlib.redirect_stderr(said):
+                self.assertIsNone(workspace.mpi_train(2, []))
+                self.assertIsNone(workspace.mpi_train(8, []))
+        self.assertEqual(1, said.getvalue().count("no such option: --oversubscribe"))
+
+    def test_exchange_is_measured_in_pairs(self):
+        class Launch:
+            """Takes as long per exchange as it has ranks, in ms."""
+            start_s, stop_s = 1.0, 2.0
+
+            def __init__(self, ranks, *_, settings):
+                self.ranks, self.summary = ranks, {"state_digest": f"{ranks}"}
+
+            def per_exchange_s(self):
+                return 1e-3 * self.ranks
+        walls = iter(range(1, 100))
+
+        def mpi(ranks, _):
+            return {"wall_s": 1e-3 * ranks * next(walls), "exchanges": 1, "state_digest": f"{ranks}"}
+        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=mpi), \
+                mock.patch.object(exchange, "EXCHANGES", {2: 10, 242: 10}):
+            tables, facts = exchange.run()
+        rows = {row[0]: row[1:] for row in tables[0].rows}
+        self.assertEqual(("0.75 x", "0.25 x"), rows["shared memory to MPI"])
+        self.assertEqual(("0.5 ... 1", "0.2 ... 0.333"), rows["from ... to"])
+        self.assertEqual(("0.75 x", "0.25 x"), rows["TCP to MPI"])
+        self.assertAlmostEqual(0.25, facts["to_mpi_242"])
+        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=lambda *_: None):
+            tables, facts = exchange.run()
+        self.assertIsNone(facts["to_mpi_242"])
+        self.assertEqual({"-"}, set(tables[0].rows[-1][1:]))
+
+    def test_a_section_that_fails_leaves_the_others(self):
+        main = bench_main()
+        sections = {"runs": lambda: 1 / 0, "graph": lambda: ([Table("graph", ["s"], [("one", "1")])], {"x": 1})}
+        with tempfile.TemporaryDirectory() as folder, \
+                mock.patch.object(main, "RESULTS", pathlib.Path(folder) / "bench"), \
+                mock.patch.object(main.page, "PAGE", pathlib.Path(folder) / "page.md"), \
+                mock.patch.object(main.importlib, "import_module", lambda name: mock.Mock(run=sections[name])), \
+                mock.patch.object(sys, "argv", ["bench", "--only", "runs,graph"]), \
+                contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            with self.assertRaisesRegex(SystemExit, "(?s)make bench: runs: .*ZeroDivisionError"):
+                main.main()
+            text = main.page.PAGE.read_text()
+            self.assertIn("| one   |   1 |", text)
+            self.assertIn("*Not measured: `make bench ONLY=runs`.*", text)
+            kept = pathlib.Path(folder) / "bench" / "graph.json"
+            self.assertEqual(workspace.commit(), json.loads(kept.read_text())["commit"])
+
+            main.page.PAGE = pathlib.Path(folder) / "no such folder" / "page.md"
+            with self.assertRaisesRegex(SystemExit, "make bench: the page is not written: .*no such folder"):
+                main.main()
+
+    def test_sections_of_different_commits_are_told_apart(self):
+        main = bench_main()
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual("a (runs, limit); b (graph)", main._commits(
+                {"runs": {"commit": "a"}, "graph": {"commit": "b"}, "limit": {"commit": "a"}}))
+        self.assertEqual("a", main._commits({"runs": {"commit": "a"}}))
 
     def test_unknown_section(self):
         done = subprocess.run([sys.executable, str(BENCH), "--only", "runs,speed"], stderr=subprocess.PIPE, text=True)
@@ -82,14 +191,33 @@ class BenchTools(unittest.TestCase):
         for block in text.strip("\n").split("\n\n"):
             self.assertEqual(1, len({len(line) for line in block.splitlines()}), block)
 
-    def test_the_page_says_what_is_missing(self):
+    def page(self, tables, facts):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(page, "PAGE", pathlib.Path(folder) / "page.md"):
-            page.write([("processor", "one")], Table("targets", ["measured"], []),
-                       {"runs": [Table("run", ["s"], [("2d", "1.5")])]})
-            text = page.PAGE.read_text()
+            page.write([("processor", "one")], tables, facts)
+            return page.PAGE.read_text()
+
+    def test_the_page_says_what_is_missing(self):
+        text = self.page({"runs": [Table("run", ["s"], [("2d", "1.5")])]}, {"runs": {"ltd_1_wall_s": 0.1}})
         self.assertIn("- processor: one", text)
         self.assertIn("| 2d  | 1.5 |", text)
         self.assertIn("*Not measured: `make bench ONLY=exchange`.*", text)
+        self.assertNotIn("What is missed", text)
+        self.assertNotIn("{", text.replace("`{", ""))
+
+    def test_the_page_says_why_a_target_is_missed(self):
+        cores = machine.cores()
+        text = self.page({}, {
+            "runs": {"ltd_1_wall_s": 0.2, "ltd_1_recording": 0.104, f"2d_{cores}_recording": 0.07,
+                     f"2d_{cores}_recording_cpu": 0.051},
+            "vehicles": {"bag_us": 5.88, "ltd_share_of_couplers": 0.45, "ltd_share_of_vehicles": 0.25},
+            "scaling": {"ltd_spread": 0.3, "ltd_fixed_us": 0.15, "lanes": 8, "lanes_of_the_last_pack": 2},
+            "graph": {"overhead_ms": 1.0, "every_vehicle_ms": 3.0}, "exchange": {"242_ms": 2.0}})
+        text = " ".join(text.split())
+        for words in ("## What is missed, and why", "couplers take 45 % of an exchange", "works 5.88 us for a record",
+                      "adds 5 % to the CPU time", "costs about 0.15 us", "fill 2 of the 8 lanes",
+                      "overhead of an exchange**: it was met on", "five of 2 ms: 30 % of the time"):
+            self.assertIn(words, text)
+        self.assertNotIn("2000 vehicles, 2D**", text)
         self.assertNotIn("{", text.replace("`{", ""))
 
 

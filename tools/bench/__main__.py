@@ -8,6 +8,7 @@ import importlib
 import json
 import sys
 import time
+import traceback
 
 import machine
 import measure
@@ -30,47 +31,66 @@ def main():
     if unknown:
         parser.error(f"{unknown[0]} is not a section; the sections are {', '.join(SECTIONS)}")
 
-    RESULTS.mkdir(parents=True, exist_ok=True)
     failures = [failure for name in chosen if (failure := _measure(name))]
 
     results = _load()
     tables = {name: [Table(**t) for t in result["tables"]] for name, result in results.items()}
-    summary = targets.table({name: result["facts"] for name, result in results.items()})
-    print(as_text([summary, *(t for name in SECTIONS for t in tables.get(name, []))]))
-    page.write(machine.describe(), summary, tables)
+    facts = {name: result["facts"] for name, result in results.items()}
+    print(as_text([targets.table(facts), *(t for name in SECTIONS for t in tables.get(name, []))]))
+    try:
+        page.write([*machine.describe(), ("commit", _commits(results))], tables, facts)
+    except OSError as error:
+        failures.append(f"make bench: the page is not written: {error}")
     if failures:
         sys.exit("\n".join(["", *failures]))
 
 
 def _measure(name):
-    """Measures a section and keeps its results; what went wrong, or nothing."""
+    """Measures a section and keeps its results; what went wrong, or nothing: one section's end is not the others'."""
     print(f"{name} ...", file=sys.stderr, flush=True)
     begin = time.monotonic()
     file = RESULTS / f"{name}.json"
-    file.unlink(missing_ok=True)
     try:
+        RESULTS.mkdir(parents=True, exist_ok=True)
+        file.unlink(missing_ok=True)
         tables, facts = importlib.import_module(name).run()
-    except measure.Failed as failure:
+        result = {"machine": machine.describe(), "commit": workspace.commit(),
+                  "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
+        file.write_text(json.dumps(result, indent=1) + "\n")
+    except (measure.Failed, OSError) as failure:
         return f"make bench: {name}: {failure}"
-    result = {"machine": machine.describe(), "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
-    file.write_text(json.dumps(result, indent=1) + "\n")
+    except Exception:
+        return f"make bench: {name}: a mistake in tools/bench:\n{traceback.format_exc()}"
     print(f"{name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
     return ""
 
 
 def _load():
-    """Results of this machine, by section."""
+    """Results of this machine and of this version of the tool, by section."""
     results = {}
     for name in SECTIONS:
         file = RESULTS / f"{name}.json"
         if not file.exists():
             continue
         result = json.loads(file.read_text())
-        if result["machine"] == [list(pair) for pair in machine.describe()]:
+        if "commit" in result and result["machine"] == [list(pair) for pair in machine.describe()]:
             results[name] = result
         else:
-            print(f"{file.relative_to(workspace.ROOT)} is of another machine: left out", file=sys.stderr)
+            print(f"{file.relative_to(workspace.ROOT)} is of another machine, or of an older make bench: left out",
+                  file=sys.stderr)
     return results
+
+
+def _commits(results):
+    """The commit that all was measured at, or which section at which: with ONLY= they may differ."""
+    sections = {}
+    for name, result in results.items():
+        sections.setdefault(result["commit"], []).append(name)
+    if len(sections) < 2:
+        return "".join(sections)
+    mixed = "; ".join(f"{commit} ({', '.join(names)})" for commit, names in sections.items())
+    print(f"The sections are of different commits: {mixed}", file=sys.stderr)
+    return mixed
 
 
 if __name__ == "__main__":

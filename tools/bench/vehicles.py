@@ -11,9 +11,11 @@ def run():
     vehicles, train, parts = map(workspace.bench, ("vehicle_bench", "train_bench", "wagon_elements_bench"))
     operations = json.loads(measure.Run([workspace.program("train_dynamics", "wagon_operations")]).stdout)
     per_record = measure.google_benchmark(workspace.program("ltd_master", "recording_bench"))
-    tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), _recording(per_record),
-              _parts(parts, operations)]
-    return tables, {"locked_ns": _ns(train, "exchange_locked/2d/1")}
+    ltd, ltd_shares = _ltd_exchange(vehicles, train)
+    step, creep_shares = _parts(parts, operations)
+    tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), ltd, _recording(per_record), step]
+    return tables, {"locked_ns": _ns(train, "exchange_locked/2d/1"), "bag_us": 1e6 * per_record["bag"]["cpu_time"],
+                    **ltd_shares, **creep_shares}
 
 
 def _ns(results, name):
@@ -39,7 +41,7 @@ def _exchanges(results):
     rows = []
     for model in ("2d", "ltd"):
         alone = _ns(results, f"exchange/{model}/1")
-        for threads in range(1, machine.cores() + 1):
+        for threads in range(1, machine.cores() + 1) if model == "2d" else [1]:
             value = _ns(results, f"exchange/{model}/{threads}")
             rows.append((f"{model}, {threads} thread(s)", number(value), times(alone / value)))
     rows.append(("2d, all wheels locked, 1 thread(s)", number(_ns(results, "exchange_locked/2d/1")), "-"))
@@ -55,6 +57,22 @@ def _beside(results):
         rows.append((f"energies for the ledger, {model}", number(_ns(results, f"record_with_ledger/{model}") - record),
                      "every 1000"))
     return Table("beside the vehicles [ns per vehicle]", ["time", "due"], rows)
+
+
+def _ltd_exchange(vehicles, train):
+    """Where the time of the LTD train goes: the table, and the shares as facts."""
+    whole = _ns(train, "exchange/ltd/1")
+    record, ledger = (_ns(train, f"{what}/ltd") for what in ("record", "record_with_ledger"))
+    parts = {
+        "couplers": _ns(train, "couplers"),
+        "vehicles": min(_ns(vehicles, name) for name in vehicles if name.startswith("ltd/")),
+        "air brake": _ns(train, "air_brake"),
+        "record": record / 10 + (ledger - record) / 1000,
+    }
+    parts["the rest"] = whole - sum(parts.values())
+    rows = [(name, number(ns), f"{100 * ns / whole:.0f} %") for name, ns in [*parts.items(), ("whole exchange", whole)]]
+    shares = {f"ltd_share_of_{name.replace(' ', '_')}": ns / whole for name, ns in parts.items()}
+    return Table("the LTD train's exchange [ns per vehicle-step]", ["time", "share"], rows), shares
 
 
 def _recording(results):
@@ -84,8 +102,12 @@ def _parts(results, operations):
     rows.append(("the rest", *rest))
     rows.append(("whole step", *[x for m in whole for x in (number(whole[m]), "100 %",
                                                             number(_arithmetic(operations[m]["whole_step"])))]))
-    return Table("parts of the wagon's step, widest lanes [ns]",
-                 ["rolling", "share", "operations", "wheels locked", "share", "operations"], rows)
+    table = Table("parts of the wagon's step, widest lanes [ns]",
+                  ["rolling", "share", "operations", "wheels locked", "share", "operations"], rows)
+    rolling = operations["rolling"]
+    return table, {
+        "creep_share": _ns(results, "rolling/creep_and_slip") / whole["rolling"],
+        "creep_share_of_operations": _arithmetic(rolling["creep_and_slip"]) / _arithmetic(rolling["whole_step"])}
 
 
 def _arithmetic(counts):
