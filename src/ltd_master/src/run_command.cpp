@@ -61,7 +61,6 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
   master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
 
-  CatchInterrupts();
   std::string fault, write_error;
   try {
     if (checkpoint == nullptr) {
@@ -112,6 +111,7 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
 }  // namespace
 
 int RunScenario(const RunOptions& options) {
+  CatchInterrupts();  // before there are files that only an orderly end completes
   const OutputOptions output_options = {
       options.out,
       true,
