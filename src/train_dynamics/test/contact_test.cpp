@@ -322,7 +322,8 @@ TEST(Polach, NoLoadNoForce) {
   }
 }
 
-// F/Q over creep, from an independent program (two digits more are printed than its c11 of 5.70 +- 0.005 supports).
+// F/Q over creep, from an independent program. It interpolates Kalker's table linearly along a/b (c11 about 5.71; ours
+// 5.70), and at small creep the force is proportional to c11: hence 0.2 %.
 TEST(Polach, ReferenceValuesOfDryAndWet) {
   const double creepage[] = {0.001, 0.01, 0.05, 0.2, 1.0};
   const struct {
@@ -336,7 +337,7 @@ TEST(Polach, ReferenceValuesOfDryAndWet) {
     const CreepLaw<double> law = LawOf(adhesion, kLoad, kSpeed);
     for (int i = 0; i < 5; ++i) {
       EXPECT_NEAR(PolachForce(law, creepage[i] * kSpeed).force / kLoad, surface.force_ratio[i],
-                  1e-3 * surface.force_ratio[i])
+                  2e-3 * surface.force_ratio[i])
           << surface.name << " at " << creepage[i];
     }
   }
