@@ -87,6 +87,13 @@ void Reader::Number(const char* key, double& value, const Range& range) {
   }
 }
 
+void Reader::Number(const char* key, std::optional<double>& value, const Range& range) {
+  const Value found = Find(key);
+  if (!found) return;
+  if (const std::optional<double> number = ReadNumber(found, key, range)) value = number;
+  if (value) NoteNumber(key, *value, false);
+}
+
 void Reader::Integer(const char* key, int& value, const Range& range) {
   if (const Value found = Find(key)) {
     if (const std::optional<int> number = ReadInteger(found, key, range)) value = *number;

@@ -557,11 +557,11 @@ TEST_F(ConfigTest, BombsAreRefused) {
     for (int j = 1; j < 10; ++j) laughs += ", " + last;
     laughs += "]\n";
   }
-  EXPECT_EQ(ErrorsOf(laughs), "a.yaml:6: holds more than 200000 values");
+  EXPECT_EQ(ErrorsOf(laughs), "a.yaml:7: holds more than 3000000 values");
 
   std::string text = "big: &big " + std::string(1 << 20, 'x') + "\nlist:\n";
-  for (int i = 0; i < 20; ++i) text += "  - *big\n";
-  EXPECT_EQ(ErrorsOf(text), "a.yaml:17: holds more than 16 MB of text once its aliases are expanded");
+  for (int i = 0; i < 70; ++i) text += "  - *big\n";
+  EXPECT_EQ(ErrorsOf(text), "a.yaml:65: holds more than 64 MB of text once its aliases are expanded");
 
   EXPECT_EQ(ErrorsOf("a: " + std::string(100000, '[')),
             "a.yaml:1: has a list or map in the place of a key (is a bracket left open?)");
@@ -579,14 +579,14 @@ TEST_F(ConfigTest, BombsAreRefused) {
   }
   EXPECT_EQ(ErrorsOf(ladder), "a.yaml:64: is nested deeper than 64 levels");
 
-  EXPECT_EQ(ErrorsOf(std::string((4 << 20) + 1, ' ')),
-            "a.yaml: is larger than 4 MB, the limit for such a file");
+  EXPECT_EQ(ErrorsOf(std::string((64 << 20) + 1, ' ')),
+            "a.yaml: is larger than 64 MB, the limit for such a file");
 }
 
 TEST_F(ConfigTest, HugeListsOfMapsAreRefused) {
   std::string text = "commands: [";
-  for (int i = 0; i < 20001; ++i) text += "{},";
-  EXPECT_EQ(ErrorsOf(text + "]\n"), "a.yaml:1: commands has 20001 entries; the limit is 20000");
+  for (int i = 0; i < 200001; ++i) text += "{},";
+  EXPECT_EQ(ErrorsOf(text + "]\n"), "a.yaml:1: commands has 200001 entries; the limit is 200000");
 }
 
 TEST_F(ConfigTest, PartsThatUnfoldWithoutBoundAreRefused) {

@@ -51,7 +51,7 @@ class MovingVehicles {
   }
 
   Vehicle vehicle;
-  TrackParams track;
+  Track track;
   std::vector<State> states;
 
  private:

@@ -245,7 +245,9 @@ TEST_F(ScenarioRules, HugeCountsAreRefusedBeforeAnythingIsMadeOfThem) {
             "--set " + count + "=1e99: " + count + " must be in [1, 100000], got 1e99");
   EXPECT_EQ(
       ErrorsOf(Scenario("emergency"), {"model=ltd", "detail_vehicles=[]", "train.consist[1].count=99900"}),
-      "trains/paper_242.yaml:6: train.consist must have at most 100000 vehicles in all");
+      "trains/paper_242.yaml:9: train.consist[3].count makes the train too long: it must have at most 100000 "
+      "vehicles "
+      "in all, got 120");
 
   std::string flood = "base: full_service\ncommands:\n";
   for (int i = 0; i < 15000; ++i) flood += "- {time_s: 1, kind: apply, reduction_kpa: 100}\n";
@@ -384,6 +386,60 @@ TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
       "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
   EXPECT_EQ(WarningsOf("a"),
             "scenarios/a.yaml:6: the ltd-no-inertia model leaves out track.friction_patches (2 entries)");
+}
+
+TEST_F(ScenarioRules, ListsOutOfOrderNameTheirEntries) {
+  const std::string track = Put("scenarios/a.yaml",
+                                "base: dip\ntrack:\n  name: t\n  grades:\n  - {from_m: 0, grade_percent: 1}\n"
+                                "  - {from_m: 90, grade_percent: 0}\n  - {from_m: 80, grade_percent: 1}\n"
+                                "  - {from_m: 85, grade_percent: 2}\n  - {from_m: 85, grade_percent: 3}\n");
+  EXPECT_EQ(
+      ErrorsOf(track),
+      "scenarios/a.yaml:7: track.grades[2].from_m must be greater than that of the entry before, 90, got 80\n"
+      "scenarios/a.yaml:9: track.grades[4].from_m must be greater than that of the entry before, 85, got 85");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip"), {"brake.service.reduction_kpa[2]=60"}),
+      "--set brake.service.reduction_kpa[2]=60: brake.service.reduction_kpa[2] must be greater than the one "
+      "before, 70, got 60");
+}
+
+TEST_F(ScenarioRules, RampsOfPatchesNameTheirEntries) {
+  const std::string file = Put("scenarios/a.yaml",
+                               "base: dip\ntrack:\n  name: t\n  friction_patches:\n"
+                               "  - {from_m: 10, to_m: 20, adhesion: low}\n"
+                               "  - {from_m: 20.5, to_m: 30, adhesion: {base: wet, slip_reduction: 0.2}, "
+                               "ramp_length_m: 2}\n"
+                               "  - {from_m: 60, to_m: 70, adhesion: low, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(ErrorsOf(file),
+            "scenarios/a.yaml:7: track.friction_patches[2].friction_coefficient must not stand beside "
+            "adhesion, which "
+            "has one, got 0.1");
+  EXPECT_EQ(
+      ErrorsOf(file, {"track.friction_patches[2]={from_m: 60, to_m: 70, friction_coefficient: 0.1}"}),
+      "scenarios/a.yaml:6: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
+      "surface: half of a ramp lies on each side of an end, and the ones at 20 m (1 m long) and 20.5 m (2 m) "
+      "overlap, got 2");
+}
+
+TEST_F(ScenarioRules, WarnsOfPatchesAndDipsOutOfReach) {
+  // The front of the wagon starts at 5.25 m and is at most 100 m further after 6 s of 60 km/h; its rear at -5.25 m.
+  Put("scenarios/a.yaml",
+      "base: dip\ntrack:\n  base: dip\n  friction_patches:\n"
+      "  - {from_m: 105, to_m: 200, friction_coefficient: 0.1}\n"
+      "  - {from_m: 106, to_m: 200, friction_coefficient: 0.1}\n"
+      "  - {from_m: -30, to_m: -6, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(WarningsOf("a"),
+            "scenarios/a.yaml:6: track.friction_patches[1] on [106, 200] m is reached by no wheel: they are "
+            "on [-5.25, "
+            "105.25] m at most in this run (2 entries of track.friction_patches are not)");
+  // Downhill it comes further: 9.81 m/s2 x 2 % x (6 s)^2 / 2 = 3.5 m.
+  EXPECT_EQ(
+      WarningsOf("a", {"track.grades=[{from_m: 0, grade_percent: -2}]", "track.friction_patches[2].to_m=0"}),
+      "");
+  EXPECT_EQ(WarningsOf("dip", {"duration_s=2"}),
+            "tracks/dip.yaml:4: track.dips[0] on [40, 50] m is reached by no wheel: they are on [-5.25, "
+            "38.583] m at "
+            "most in this run");
 }
 
 }  // namespace

@@ -170,7 +170,8 @@ TEST_P(LaneKernelsTest, ReportABatchWithAWagonThatIsNotSound) {
     WagonBatch batch(wagon, GetParam(), states);
     Arrays arrays;
     EXPECT_FALSE(batch.Advance({}, 1e-3, 1, arrays.Pointers(), false)) << "wagon " << broken;
-    for (int i = 0; i < kVehicles; ++i) EXPECT_EQ(i != broken, IsSound(batch.StateOf(i)));
+    for (int i = 0; i < kVehicles; ++i)
+      EXPECT_EQ(i != broken, IsSound(batch.vehicle(), Track(), batch.StateOf(i)));
   }
 }
 

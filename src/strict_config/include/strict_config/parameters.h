@@ -31,7 +31,7 @@
 ///                             them.
 /// The key of a Check may lead further down: "commands[1].reduction_kpa".
 ///
-/// Group and Part also take a std::optional<Struct>, which stays as it is when the key is absent.
+/// Number, Group and Part also take a std::optional, which stays as it is when the key is absent.
 ///
 /// A number whose value is kRequired (an integer: kRequiredInteger) before reading must be given; any other
 /// value is its default. An absent list keeps its default; a Check says when it must not be empty.

@@ -35,9 +35,9 @@ struct LoadOptions {
 /// What all readers of one configuration share.
 struct ReadSession {
   /// A configuration may not unfold, through its references, to more values than this.
-  static constexpr std::size_t kMaxValues = 2000000;
+  static constexpr std::size_t kMaxValues = 3000000;
   /// Nor may a list of maps or parts be longer than this.
-  static constexpr std::size_t kMaxItems = 20000;
+  static constexpr std::size_t kMaxItems = 200000;
 
   ErrorList& errors;
   PartLibrary library;
@@ -65,6 +65,7 @@ struct ReadSession {
 class Reader {
  public:
   void Number(const char* key, double& value, const Range& range);
+  void Number(const char* key, std::optional<double>& value, const Range& range);
   void Integer(const char* key, int& value, const Range& range);
   void Flag(const char* key, bool& value);
   void Text(const char* key, std::string& value);

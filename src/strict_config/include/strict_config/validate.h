@@ -14,6 +14,9 @@ namespace strict_config {
 class Validator {
  public:
   void Number(const char* key, double value, const Range& range);
+  void Number(const char* key, const std::optional<double>& value, const Range& range) {
+    if (value) Number(key, *value, range);
+  }
   void Integer(const char* key, int value, const Range& range);
   void Flag(const char*, bool) {}
   void Text(const char*, const std::string&) {}

@@ -16,6 +16,9 @@ namespace strict_config {
 class Writer {
  public:
   void Number(const char* key, double value, const Range&);
+  void Number(const char* key, const std::optional<double>& value, const Range& range) {
+    if (value) Number(key, *value, range);
+  }
   void Integer(const char* key, int value, const Range&);
   void Flag(const char* key, bool value);
   void Text(const char* key, const std::string& value);

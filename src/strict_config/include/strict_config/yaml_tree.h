@@ -60,10 +60,10 @@ struct Node {
 
 /// The bounds within which any text is parsed, however hostile.
 struct YamlLimits {
-  static constexpr std::size_t kBytes = 4u << 20;           ///< of a file
+  static constexpr std::size_t kBytes = 64u << 20;          ///< of a file
   static constexpr int kDepth = 64;                         ///< of nested lists and maps
-  static constexpr std::size_t kNodes = 200000;             ///< after aliases are expanded
-  static constexpr std::size_t kExpandedBytes = 16u << 20;  ///< of all scalars after aliases are expanded
+  static constexpr std::size_t kNodes = 3000000;            ///< after aliases are expanded
+  static constexpr std::size_t kExpandedBytes = 64u << 20;  ///< of all scalars after aliases are expanded
 };
 
 /// Parses one YAML document.

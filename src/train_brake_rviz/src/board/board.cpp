@@ -276,7 +276,7 @@ void Board::DrawCloseUp(Drawing& drawing, const Snapshot& snapshot, const Select
   if (followed > 0 && !force.empty()) sight.front_force_n = force[followed - 1];
   if (followed + 1 < vehicles() && !force.empty()) sight.rear_force_n = force[followed];
   sight.color = Colors(snapshot, selection)[followed];
-  close_up.Draw(drawing, scenario_.track, sight);
+  close_up.Draw(drawing, elevation_.track(), sight);
 }
 
 void Board::DrawLegend(Drawing& drawing, const Selection& selection) const {

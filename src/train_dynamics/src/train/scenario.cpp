@@ -61,6 +61,44 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
                       " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
+/// The positions that wheels can have in a run at most.
+///
+/// Without traction nothing but the grade drives a train: its speed stays below that of the start plus g T times the
+/// steepest fall ahead, and likewise backwards. With traction this bound must grow.
+Stretch ReachOf(const ScenarioParams& scenario) {
+  double steepest_fall = 0.0, steepest_rise = 0.0;
+  for (const GradeParams& grade : scenario.track.grades) {
+    steepest_fall = std::max(steepest_fall, -0.01 * grade.grade_percent);
+    steepest_rise = std::max(steepest_rise, 0.01 * grade.grade_percent);
+  }
+  double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
+  double rear_m = front_m;
+  for (const ConsistGroupParams& group : scenario.train.consist)
+    rear_m -= group.count * group.vehicle.length_m;
+  const double time_s = scenario.duration_s, speed_mps = scenario.InitialSpeed();
+  const auto way = [&](double start_mps, double slope) {
+    return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
+  };
+  return {rear_m - way(-speed_mps, steepest_rise), front_m + way(speed_mps, steepest_fall)};
+}
+
+/// Warns once of the entries of a list of the track that no wheel reaches.
+template <class Entry, class EndOf>
+void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of,
+                 const Stretch& reach, std::vector<Warning>& warnings) {
+  std::size_t beyond = 0, first = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].from_m < reach.to_m && end_of(entries[i]) > reach.from_m) continue;
+    if (beyond++ == 0) first = i;
+  }
+  if (beyond == 0) return;
+  const std::string key = list + Index(first);
+  warnings.push_back({key, key + " on [" + Short(entries[first].from_m) + ", " +
+                               Short(end_of(entries[first])) + "] m is reached by no wheel: they are on [" +
+                               Short(reach.from_m) + ", " + Short(reach.to_m) + "] m at most in this run" +
+                               (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
+}
+
 }  // namespace
 
 const char* ModelName(VehicleModel model) {
@@ -206,6 +244,15 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     };
     leaves_out("track.dips", scenario.track.dips.size());
     leaves_out("track.friction_patches", scenario.track.friction_patches.size());
+  } else if (!train.consist.empty()) {
+    const Stretch reach = ReachOf(scenario);
+    WarnOfReach(
+        "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
+        reach, warnings);
+    WarnOfReach(
+        "track.friction_patches", scenario.track.friction_patches,
+        [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach,
+        warnings);
   }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";

@@ -152,8 +152,8 @@ void VehicleBatch<Vehicle>::SetState(int i, const State& state) {
 }
 
 template <class Vehicle>
-bool VehicleBatch<Vehicle>::Advance(const TrackParams& track, double dt, int steps,
-                                    const VehicleArrays& arrays, bool with_output) {
+bool VehicleBatch<Vehicle>::Advance(const Track& track, double dt, int steps, const VehicleArrays& arrays,
+                                    bool with_output) {
   const int lanes = kernels_.lanes, full = size_ / lanes;
   const auto step = [&](int packs, int from, const VehicleArrays& at) {
     std::byte* states = states_.data() + static_cast<std::size_t>(from) * lanes * sizeof(State);

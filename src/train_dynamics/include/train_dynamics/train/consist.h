@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,13 @@ struct TrainParams {
     v.Part("connection", connection, "couplers");
     v.List("consist", consist);
     v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
-    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all", {"consist"});
+    long vehicles = 0;
+    for (std::size_t i = 0; i < consist.size(); ++i) {
+      const bool fitted = vehicles <= 100000;
+      vehicles += consist[i].count;
+      v.Check(!fitted || vehicles <= 100000, "consist[" + std::to_string(i) + "].count",
+              "makes the train too long: it must have at most 100000 vehicles in all", {"consist"});
+    }
   }
 
   int VehicleCount() const;

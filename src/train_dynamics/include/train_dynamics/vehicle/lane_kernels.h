@@ -34,8 +34,8 @@ struct LaneKernels {
   /// @param outputs  what the last step shows; may be null
   /// @return whether all lanes are sound
   template <class Vehicle>
-  using StepPacks = bool (*)(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                             int packs, const VehicleArrays& arrays, std::byte* states, std::byte* outputs);
+  using StepPacks = bool (*)(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
+                             const VehicleArrays& arrays, std::byte* states, std::byte* outputs);
 
   /// What a record holds of a pack.
   template <class Vehicle>

@@ -25,7 +25,7 @@ class VehicleBatch {
   /// Advances all vehicles by `steps` steps. @param arrays  of the first vehicle; those of the others follow
   /// @param with_output  keep what the last step shows
   /// @return whether all vehicles are sound
-  bool Advance(const TrackParams& track, double dt, int steps, const VehicleArrays& arrays, bool with_output);
+  bool Advance(const Track& track, double dt, int steps, const VehicleArrays& arrays, bool with_output);
 
   /// What a record holds of every vehicle, after an Advance with output.
   void Record(const RecordArrays& record) const;

@@ -10,21 +10,20 @@
 namespace train_dynamics {
 
 template <class T>
-void Step(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void Step(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
           WagonState<T>& state, WagonOutput<T>* output) {
   StepWagon(wagon, track, loads, dt, state, output);
 }
 
 template <class T>
-void Step(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
   StepLtd(vehicle, track, loads, dt, state, output);
 }
 
 template <class T, class Vehicle>
-[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                                int packs, const VehicleArrays& arrays, std::byte* states,
-                                std::byte* outputs) {
+[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
+                                const VehicleArrays& arrays, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
   MaskOf<T> sound = T(0.0) == T(0.0);
@@ -42,7 +41,7 @@ template <class T, class Vehicle>
     Step(vehicle, track, loads, dt, pack, output);
     Store(CouplerHeadDisplacement(vehicle, pack), arrays.head_displacement_m + first);
     Store(CouplerHeadVelocity(vehicle, pack), arrays.head_velocity_mps + first);
-    sound = sound & IsSound(pack);
+    sound = sound & IsSound(vehicle, track, pack);
   }
   return AllOf(sound);
 }
