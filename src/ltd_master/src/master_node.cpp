@@ -282,7 +282,7 @@ void MasterNode::Publish(const TrainRecord& record) {
     Convert(record, pressures_);
     pressures_publisher_.publish(pressures_);
   }
-  if (record.ledger != nullptr) {
+  if (record.ledger) {
     if (record.exchange == 0) initial_energy_j_ = record.ledger->Stored();
     Convert(record, *record.ledger, initial_energy_j_, ledger_);
     ledger_publisher_.publish(ledger_);
