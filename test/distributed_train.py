@@ -131,6 +131,14 @@ class DistributedTrain(unittest.TestCase):
         self.assert_complete(self.launch("nodes:=2", "exchange_interval:=0.005", "set:=initial_speed_kmh=50"), expected)
         self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
 
+    def test_models_mixed_in_one_train(self):
+        mixed = "train.consist[1].model=ltd"
+        expected = train_sim("--set", mixed)
+        for nodes in 1, 3:
+            with self.subTest(nodes=nodes):
+                self.assert_complete(self.launch(f"nodes:={nodes}", f"set:={mixed}"), expected)
+        self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
+
     def test_ltd_runs_in_the_master_alone(self):
         expected = train_sim("--model", "ltd")
         launch = self.launch("model:=ltd")

@@ -55,7 +55,7 @@ void LiveTopics::Keep(const train_dynamics::TrainRecord& record) {
   status_.travelled_m = record.mean_position_m - start_position_m_;
   // The two ends of the train, which have no coupler and no force, are in the list: hence >= 0 and <= 0.
   const auto [smallest, largest] =
-      std::minmax_element(record.coupler_force_n.begin(), record.coupler_force_n.end());
+      std::minmax_element(record.held.coupler_force_n.begin(), record.held.coupler_force_n.end());
   status_.max_tension_n = *largest;
   status_.max_compression_n = *smallest;
   held_back_ = true;

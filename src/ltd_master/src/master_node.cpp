@@ -285,7 +285,7 @@ void MasterNode::Publish(const TrainRecord& record) {
     train_results::Convert(record, pressures_);
     pressures_publisher_.publish(pressures_);
   }
-  if (record.ledger != nullptr) {
+  if (record.ledger) {
     if (record.exchange == 0) initial_energy_j_ = record.ledger->Stored();
     train_results::Convert(record, *record.ledger, initial_energy_j_, ledger_);
     ledger_publisher_.publish(ledger_);

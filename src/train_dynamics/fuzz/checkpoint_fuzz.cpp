@@ -21,7 +21,7 @@ namespace {
 /// The bytes of a snapshot with these contents, made without its code.
 Bytes Seal(const char* mark, const std::uint8_t* contents, std::size_t size) {
   Bytes bytes(mark, mark + 8);
-  bytes.push_back(1);  // format version
+  bytes.push_back(2);  // format version
   bytes.resize(16);
   bytes.insert(bytes.end(), contents, contents + size);
   Digest checksum;

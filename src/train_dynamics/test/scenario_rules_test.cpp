@@ -12,6 +12,8 @@
 #include "strict_config/error_list.h"
 #include "strict_config/validate.h"
 #include "train_dynamics/config/load_scenario.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 
 namespace train_dynamics::config {
 namespace {
@@ -440,6 +442,53 @@ TEST_F(ScenarioRules, WarnsOfPatchesAndDipsOutOfReach) {
             "tracks/dip.yaml:4: track.dips[0] on [40, 50] m is reached by no wheel: they are on [-5.25, "
             "38.583] m at "
             "most in this run");
+}
+
+// ---- models of single groups -----------------------------------------------------------------------------------
+
+TEST_F(ScenarioRules, AGroupHasItsOwnModelOrTheScenarios) {
+  const ScenarioParams mixed =
+      config::LoadScenario(Scenario("emergency"), {"model=ltd-no-inertia", "train.consist[0].model=2d",
+                                                   "train.consist[2].model=ltd", "detail_vehicles=[1, 2]"})
+          .params;
+  const std::vector<VehicleModel> models = mixed.VehicleModels();
+  ASSERT_EQ(models.size(), 242u);
+  EXPECT_EQ(models[0], VehicleModel::kTwoD);
+  EXPECT_EQ(models[120], VehicleModel::kLtdNoInertia);
+  EXPECT_EQ(models[121], VehicleModel::kLtd);
+  EXPECT_EQ(models[241], VehicleModel::kLtdNoInertia);
+  EXPECT_EQ(mixed.ModelNames(), "2d, ltd, ltd-no-inertia");
+  EXPECT_EQ(mixed.DetailedVehicles(), std::vector<int>({0}));  // the other one has no details
+  // Its text says the same.
+  strict_config::ErrorList errors;
+  const auto again = strict_config::LoadText<ScenarioParams>(strict_config::Write(mixed), "text", errors);
+  EXPECT_TRUE(errors.empty());
+  EXPECT_EQ(again.VehicleModels(), models);
+}
+
+TEST_F(ScenarioRules, MixedModelsAreNamedInErrorsAndWarnings) {
+  const std::string file = Scenario("emergency");
+  EXPECT_NE(
+      ErrorsOf(file, {"train.consist[1].model=ldt"})
+          .find("train.consist[1].model must be one of 2d, ltd or ltd-no-inertia, got ldt"),
+      std::string::npos);
+  EXPECT_NE(ErrorsOf(file, {"model=ltd", "integrator=newmark", "train.consist[1].model=2d"})
+                .find("must be leapfrog for the 2d model"),
+            std::string::npos);
+  EXPECT_NE(WarningsOf("emergency", {"train.consist[0].model=ltd", "detail_vehicles=[1]"})
+                .find("detail_vehicles[0] is 1, a vehicle of the ltd model, which has no details"),
+            std::string::npos);
+}
+
+TEST_F(ScenarioRules, ADipMayLieUnderVehiclesThatHaveNoContact) {
+  // Vehicle 1 alone stands on [-5, 5] m or so; the dip lies under it.
+  const std::string dip = "track.dips=[{from_m: -1, depth_m: 0.01, length_m: 2}]";
+  EXPECT_NE(ErrorsOf(Scenario("emergency"), {dip}).find("must not lie under the train at its start"),
+            std::string::npos);
+  EXPECT_EQ(ErrorsOf(Scenario("emergency"), {dip, "train.consist[0].model=ltd"}), "");
+  EXPECT_NE(ErrorsOf(Scenario("emergency"), {dip, "train.consist[1].model=ltd"})
+                .find("must not lie under vehicles of the 2d model at their start"),
+            std::string::npos);
 }
 
 }  // namespace

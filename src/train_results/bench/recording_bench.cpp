@@ -10,7 +10,6 @@
 #include "train_dynamics/train/in_process_train.h"
 #include "train_results/bag_recorder.h"
 #include "train_results/csv_recorder.h"
-#include "train_results/record_copy.h"
 
 namespace train_results {
 namespace {
@@ -23,7 +22,7 @@ constexpr int kRecords = 7001;
 struct Braking {
   train_dynamics::config::LoadedScenario scenario = train_dynamics::config::LoadScenario(
       std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios/emergency.yaml", {"duration_s=8"});
-  RecordCopy last;
+  train_dynamics::TrainRecord last;
 
   Braking() {
     train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, 1);
@@ -41,9 +40,9 @@ const Braking& TheTrain() {
 
 /// That record as if of another exchange.
 train_dynamics::TrainRecord RecordOf(std::uint64_t number) {
-  train_dynamics::TrainRecord record = TheTrain().last.View();
+  train_dynamics::TrainRecord record = TheTrain().last;
   record.exchange = number;
-  record.ledger = nullptr;  // one record in a hundred has one
+  record.ledger.reset();  // one record in a hundred has one
   return record;
 }
 
@@ -64,8 +63,7 @@ class Folder {
 
 /// What the run itself does: the rest is done by another thread.
 void CopyRecord(benchmark::State& state) {
-  RecordCopy copy;
-  copy = TheTrain().last.View();
+  train_dynamics::TrainRecord copy = TheTrain().last;
   std::uint64_t number = 0;
   for (auto _ : state) {
     copy = RecordOf(number++);

@@ -16,7 +16,6 @@
 #include "train_dynamics/train/in_process_train.h"
 #include "train_results/bag_recorder.h"
 #include "train_results/csv_recorder.h"
-#include "train_results/record_copy.h"
 
 namespace train_results {
 namespace {
@@ -40,7 +39,7 @@ struct Recorded {
   fs::path outside = fs::path(scratch.Put("outside", "untouched")).parent_path();
   fs::path folder = outside / "run";
   int vehicles = 2;
-  RecordCopy last;
+  train_dynamics::TrainRecord last;
   Bytes bag, csv;
   std::map<fs::path, std::string> files;  ///< of the run and outside
 
@@ -86,7 +85,7 @@ void Try(const Recorded& run, const Bytes& checkpoint, const Where&... where) {
     Recorder recorder(where..., checkpoint, run.vehicles);
     train_brake_build::fuzz::Require(FilesBelow(run.outside) == run.files, "looking changes nothing");
     recorder.GoOn();
-    recorder.Record(run.last.View());
+    recorder.Record(run.last);
     recorder.Checkpoint();
   } catch (const train_dynamics::SnapshotError&) {
     train_brake_build::fuzz::Require(FilesBelow(run.outside) == run.files, "what is refused is left alone");

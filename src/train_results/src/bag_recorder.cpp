@@ -66,7 +66,7 @@ void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
   bag_.Write(forces_topic_, time, forces_);
   Convert(record, pressures_);
   bag_.Write(pressures_topic_, time, pressures_);
-  if (record.ledger != nullptr) {
+  if (record.ledger) {
     if (record.exchange == 0) initial_j_ = record.ledger->Stored();
     Convert(record, *record.ledger, initial_j_, ledger_);
     bag_.Write(ledger_topic_, time, ledger_);

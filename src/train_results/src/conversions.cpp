@@ -28,12 +28,10 @@ void Copy(const From& from, To& to) {
 
 void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
   Stamp(record, message);
-  message.position_m = record.vehicles.position_m;
-  message.speed_mps = record.vehicles.speed_mps;
+  train_dynamics::ForEachRecordField(
+      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { Copy(from, to); }, record.vehicles,
+      message);
   Copy(record.acceleration_mps2, message.acceleration_mps2);
-  Copy(record.vehicles.shoe_force_n, message.shoe_force_n);
-  Copy(record.vehicles.wheel_force_n, message.wheel_force_n);
-  Copy(record.vehicles.creepage, message.creepage);
   message.vehicle_digest = record.vehicles.state_digest;
   message.state_digest = record.state_digest;
 }
@@ -43,7 +41,7 @@ void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message
   const size_t connections = record.coupler_extension_m.size();
   message.coupler_force_n.resize(connections);
   for (size_t c = 0; c < connections; ++c) {
-    message.coupler_force_n[c] = static_cast<float>(record.coupler_force_n[c + 1]);
+    message.coupler_force_n[c] = static_cast<float>(record.held.coupler_force_n[c + 1]);
   }
   Copy(record.coupler_extension_m, message.coupler_deflection_m);
 }
@@ -75,9 +73,9 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
   Stamp(record, message);
   message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
   train_brake_msgs::DetailToMessage(detail, message);
-  message.front_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle]);
-  message.rear_coupler_force_n = static_cast<float>(record.coupler_force_n[detail.vehicle + 1]);
-  message.cylinder_pressure_pa = static_cast<float>(record.held_pressure_pa[detail.vehicle]);
+  message.front_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle]);
+  message.rear_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle + 1]);
+  message.cylinder_pressure_pa = static_cast<float>(record.held.cylinder_pressure_pa[detail.vehicle]);
 }
 
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario) {

@@ -40,6 +40,31 @@ void Row(std::ofstream& stream, const Values& values) {
   fmt::print(stream, ",{:.9g}", fmt::join(values, ","));
 }
 
+/// A line for each vehicle, a column for each number of its record.
+std::string VehicleTable(const train_dynamics::RecordArrays& record) {
+  using train_dynamics::RecordInfo;
+  std::string table = "vehicle";
+  train_dynamics::ForEachRecordField(
+      [&](const RecordInfo& field, const auto&) {
+        for (int i = 1; i <= field.numbers; ++i) {
+          table += field.numbers == 1 ? fmt::format(",{}", field.name) : fmt::format(",{}_{}", field.name, i);
+        }
+      },
+      record);
+  table += '\n';
+  for (std::size_t vehicle = 0; vehicle < record.speed_mps.size(); ++vehicle) {
+    table += std::to_string(vehicle + 1);
+    train_dynamics::ForEachRecordField(
+        [&](const RecordInfo& field, const auto& array) {
+          const auto first = array.begin() + static_cast<long>(vehicle * field.numbers);
+          table += fmt::format(",{:.12g}", fmt::join(first, first + field.numbers, ","));
+        },
+        record);
+    table += '\n';
+  }
+  return table;
+}
+
 }  // namespace
 
 CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
@@ -108,7 +133,7 @@ Bytes CsvRecorder::Checkpoint() {
 void CsvRecorder::Record(const TrainRecord& record) {
   const std::vector<double>& speed = record.vehicles.speed_mps;
   vehicles_ = static_cast<int>(speed.size());
-  const std::vector<double>& force = record.coupler_force_n;
+  const std::vector<double>& force = record.held.coupler_force_n;
   const auto mean = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
   };
@@ -141,8 +166,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
     fmt::print(wagon, ",{:.9g},{:.9g},{:.9g}\n", force[detail.vehicle], force[detail.vehicle + 1],
                record.cylinder_pressure_pa[detail.vehicle]);
   }
-  position_m_ = record.vehicles.position_m;
-  speed_mps_ = speed;
+  last_ = static_cast<const train_dynamics::RecordArrays&>(record.vehicles);
   CheckAll();
 }
 
@@ -174,12 +198,8 @@ void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
     couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
                             extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
   }
-  std::string vehicles = "vehicle,position_m,speed_mps\n";
-  for (size_t i = 0; i < speed_mps_.size(); ++i) {
-    vehicles += fmt::format("{},{:.12g},{:.9g}\n", i + 1, position_m_[i], speed_mps_[i]);
-  }
   WriteFile(folder_ / "couplers.csv", couplers);
-  WriteFile(folder_ / "vehicles.csv", vehicles);
+  WriteFile(folder_ / "vehicles.csv", VehicleTable(last_));
   for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
   for (auto& [vehicle, stream] : wagons_) stream.flush();
   CheckAll();

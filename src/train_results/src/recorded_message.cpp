@@ -1,11 +1,14 @@
 #include "train_results/recorded_message.h"
 
 #include <fmt/format.h>
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <sstream>
 #include <type_traits>
 
 #include "strict_config/text_file.h"
@@ -74,10 +77,35 @@ std::string Text(T value) {
   return fmt::format("{}", value);
 }
 
-/// Walks through a message's fields and notes what differs.
+/// The names of a message's fields, in the order of its definition.
+template <class Message>
+const std::vector<std::string>& FieldNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> found;
+    std::istringstream definition(ros::message_traits::Definition<Message>::value());
+    for (std::string line; std::getline(definition, line) && line.rfind("====", 0) != 0;) {
+      std::istringstream words(line.substr(0, line.find('#')));
+      std::string type, name;
+      const bool is_constant = line.substr(0, line.find('#')).find('=') != std::string::npos;
+      if (words >> type >> name && !is_constant) found.push_back(name);
+    }
+    return found;
+  }();
+  return names;
+}
+
+/// A stream that the fields of a message are written to, one after the other as its definition has them; notes in what
+/// they differ from the recorded ones.
 class Comparison {
  public:
-  Comparison(const Bytes& recorded, const std_msgs::Header& header) : source_(recorded) {
+  /// What the elements of a field belong to. @param size  of an array; 0: a number by itself
+  using OwnersOf = std::function<Owners(const std::string& name, std::size_t size)>;
+
+  Comparison(const Bytes& recorded, const std::vector<std::string>& names, OwnersOf owners_of)
+      : source_(recorded), names_(names), owners_of_(std::move(owners_of)) {}
+
+  void next(const std_msgs::Header& header) {
+    NextName();
     const std::optional<ros::Time> stamp = source_.TakeHeader();
     readable_ = stamp.has_value();
     if (readable_ && *stamp != header.stamp) {
@@ -85,30 +113,29 @@ class Comparison {
     }
   }
 
-  template <class T>
-  void Number(const char* quantity, T repeated, const Owners& owners = Train) {
+  template <class T, std::enable_if_t<std::is_arithmetic_v<T>, int> = 0>
+  void next(const T& repeated) {
+    const std::string& quantity = NextName();
     T recorded{};
     if (!readable_ || !source_.Take(recorded)) return Fail();
-    Judge(quantity, recorded, repeated, owners, 0);
+    Judge(quantity, recorded, repeated, owners_of_(quantity, 0), 0);
   }
 
   /// An array of variable size.
-  template <class Array>
-  void Numbers(const char* quantity, const Array& repeated, const Owners& owners) {
-    if (TakeSize(quantity, repeated.size())) Elements(quantity, repeated, owners);
+  template <class T>
+  void next(const std::vector<T>& repeated) {
+    const std::string& quantity = NextName();
+    if (TakeSize(quantity, repeated.size())) Elements(quantity, repeated);
   }
 
-  /// An array of fixed size, or the elements of another one.
-  template <class Array>
-  void Elements(const char* quantity, const Array& repeated, const Owners& owners) {
-    for (std::size_t i = 0; i < repeated.size(); ++i) {
-      typename Array::value_type recorded{};
-      if (!readable_ || !source_.Take(recorded)) return Fail();
-      Judge(quantity, recorded, repeated[i], owners, i);
-    }
+  /// An array of fixed size.
+  template <class T, std::size_t n>
+  void next(const boost::array<T, n>& repeated) {
+    Elements(NextName(), repeated);
   }
 
-  void Texts(const char* quantity, const std::vector<std::string>& repeated) {
+  void next(const std::vector<std::string>& repeated) {
+    const std::string& quantity = NextName();
     if (!TakeSize(quantity, repeated.size())) return;
     for (const std::string& text : repeated) {
       std::string recorded;
@@ -131,8 +158,19 @@ class Comparison {
 
  private:
   void Fail() { readable_ = false; }
+  const std::string& NextName() { return names_.at(name_++); }
 
-  bool TakeSize(const char* quantity, std::size_t repeated) {
+  template <class Array>
+  void Elements(const std::string& quantity, const Array& repeated) {
+    const Owners owners = owners_of_(quantity, repeated.size());
+    for (std::size_t i = 0; i < repeated.size(); ++i) {
+      typename Array::value_type recorded{};
+      if (!readable_ || !source_.Take(recorded)) return Fail();
+      Judge(quantity, recorded, repeated[i], owners, i);
+    }
+  }
+
+  bool TakeSize(const std::string& quantity, std::size_t repeated) {
     std::uint32_t recorded = 0;
     if (!readable_ || !source_.Take(recorded)) {
       Fail();
@@ -144,7 +182,7 @@ class Comparison {
   }
 
   template <class T>
-  void Judge(const char* quantity, T recorded, T repeated, const Owners& owners, std::size_t i) {
+  void Judge(const std::string& quantity, T recorded, T repeated, const Owners& owners, std::size_t i) {
     if (std::memcmp(&recorded, &repeated, sizeof recorded) == 0) return;  // bit by bit: 0.0 is not -0.0
     if constexpr (std::is_floating_point_v<T>) {
       if (std::isnan(recorded) && std::isnan(repeated)) return;  // whose other bits no rule fixes
@@ -160,9 +198,26 @@ class Comparison {
   }
 
   Source source_;
-  bool readable_;
+  const std::vector<std::string>& names_;
+  std::size_t name_ = 0;  ///< the next one
+  OwnersOf owners_of_;
+  bool readable_ = true;
   std::vector<Difference> differences_;
 };
+
+template <class Message>
+std::vector<Difference> CompareFields(const Bytes& recorded, const Message& repeated,
+                                      Comparison::OwnersOf owners_of) {
+  Comparison comparison(recorded, FieldNames<Message>(), std::move(owners_of));
+  ros::serialization::Serializer<Message>::template allInOne<Comparison, const Message&>(comparison,
+                                                                                         repeated);
+  return comparison.Finish();
+}
+
+/// The elements of all arrays belong to these, numbers by themselves to the train.
+Comparison::OwnersOf OfArrays(const Owners& owners) {
+  return [owners](const std::string&, std::size_t size) { return size == 0 ? Owners(Train) : owners; };
+}
 
 }  // namespace
 
@@ -182,48 +237,26 @@ std::optional<std::uint64_t> ExchangeOf(const Bytes& message) {
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::TrainState& repeated) {
-  Comparison comparison(recorded, repeated.header);
-  comparison.Number("exchange", repeated.exchange);
-  comparison.Numbers("position_m", repeated.position_m, Vehicle);
-  comparison.Numbers("speed_mps", repeated.speed_mps, Vehicle);
-  comparison.Numbers("acceleration_mps2", repeated.acceleration_mps2, Vehicle);
-  comparison.Numbers("shoe_force_n", repeated.shoe_force_n, Vehicle);
-  comparison.Numbers("wheel_force_n", repeated.wheel_force_n, Vehicle);
-  comparison.Numbers("creepage", repeated.creepage, Vehicle);
-  comparison.Numbers("vehicle_digest", repeated.vehicle_digest, Vehicle);
-  comparison.Number("state_digest", repeated.state_digest);
-  return comparison.Finish();
+  const std::size_t vehicles = repeated.vehicle_digest.size();
+  return CompareFields(recorded, repeated, [vehicles](const std::string&, std::size_t size) -> Owners {
+    if (size == 0) return Train;
+    const std::size_t numbers = std::max<std::size_t>(1, size / vehicles);  // of each vehicle
+    return [numbers](std::size_t i) { return Vehicle(i / numbers); };
+  });
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::InTrainForces& repeated) {
-  Comparison comparison(recorded, repeated.header);
-  comparison.Number("exchange", repeated.exchange);
-  comparison.Numbers("coupler_force_n", repeated.coupler_force_n, Connection);
-  comparison.Numbers("coupler_deflection_m", repeated.coupler_deflection_m, Connection);
-  return comparison.Finish();
+  return CompareFields(recorded, repeated, OfArrays(Connection));
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::BrakePressures& repeated) {
-  Comparison comparison(recorded, repeated.header);
-  comparison.Number("exchange", repeated.exchange);
-  comparison.Numbers("cylinder_pressure_pa", repeated.cylinder_pressure_pa, Vehicle);
-  return comparison.Finish();
+  return CompareFields(recorded, repeated, OfArrays(Vehicle));
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::EnergyLedger& repeated) {
-  Comparison comparison(recorded, repeated.header);
-  comparison.Number("exchange", repeated.exchange);
-  comparison.Texts("element", repeated.element);
-  comparison.Numbers("dissipated_j", repeated.dissipated_j, [&](std::size_t i) {
-    return Owner{0, repeated.element[i]};
-  });
-  comparison.Number("initial_j", repeated.initial_j);
-  comparison.Number("kinetic_j", repeated.kinetic_j);
-  comparison.Number("potential_j", repeated.potential_j);
-  comparison.Number("gravity_work_j", repeated.gravity_work_j);
-  comparison.Number("traction_work_j", repeated.traction_work_j);
-  comparison.Number("residual_j", repeated.residual_j);
-  return comparison.Finish();
+  return CompareFields(recorded, repeated, OfArrays([&](std::size_t i) {
+                         return Owner{0, repeated.element[i]};
+                       }));
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::WagonState& repeated) {
@@ -240,25 +273,12 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::W
     const char* const half[] = {"front", "rear"};
     return Owner{number, fmt::format("{}, {} bogie, {} half", wagon, half[i / 2], half[i % 2])};
   };
-  Comparison comparison(recorded, repeated.header);
-  comparison.Number("exchange", repeated.exchange);
-  comparison.Number("vehicle", repeated.vehicle);
-  comparison.Elements("body_x_m", repeated.body_x_m, body);
-  comparison.Elements("body_z_m", repeated.body_z_m, body);
-  comparison.Elements("body_pitch_rad", repeated.body_pitch_rad, body);
-  comparison.Elements("body_x_mps", repeated.body_x_mps, body);
-  comparison.Elements("body_z_mps", repeated.body_z_mps, body);
-  comparison.Elements("body_pitch_radps", repeated.body_pitch_radps, body);
-  comparison.Elements("wheel_normal_force_n", repeated.wheel_normal_force_n, wheelset);
-  comparison.Elements("creepage", repeated.creepage, wheelset);
-  comparison.Elements("creep_force_n", repeated.creep_force_n, wheelset);
-  comparison.Elements("shoe_force_n", repeated.shoe_force_n, wheelset);
-  comparison.Elements("spring_deflection_m", repeated.spring_deflection_m, nest);
-  comparison.Elements("wedge_force_n", repeated.wedge_force_n, nest);
-  comparison.Number("front_coupler_force_n", repeated.front_coupler_force_n, whole);
-  comparison.Number("rear_coupler_force_n", repeated.rear_coupler_force_n, whole);
-  comparison.Number("cylinder_pressure_pa", repeated.cylinder_pressure_pa, whole);
-  return comparison.Finish();
+  return CompareFields(recorded, repeated, [&](const std::string& name, std::size_t size) -> Owners {
+    if (name == "exchange" || name == "vehicle") return Train;
+    if (name.rfind("body_", 0) == 0) return body;
+    if (name == "spring_deflection_m" || name == "wedge_force_n") return nest;
+    return size == 0 ? whole : wheelset;
+  });
 }
 
 }  // namespace train_results

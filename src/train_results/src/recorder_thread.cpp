@@ -56,7 +56,7 @@ void RecorderThread::Work() {
     std::exception_ptr error;
     lock.unlock();
     try {
-      for (; next != end; ++next) recorder_(queue_[next % kQueue].View());
+      for (; next != end; ++next) recorder_(queue_[next % kQueue]);
     } catch (...) {
       error = std::current_exception();
     }

@@ -64,6 +64,9 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double t
   keep("record_interval_s", p.record_interval_s, q.record_interval_s);
   keep("ledger_interval_s", p.ledger_interval_s, q.ledger_interval_s);
   keep("the number of vehicles", now.consist.vehicles(), then.consist.vehicles());
+  if (p.VehicleModels() != q.VehicleModels()) {
+    throw std::invalid_argument("the model of every vehicle must stay as it is when a run is resumed");
+  }
   if (p.DetailedVehicles() != q.DetailedVehicles()) {
     throw std::invalid_argument("detail_vehicles must stay as they are when a run is resumed");
   }

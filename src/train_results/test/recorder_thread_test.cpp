@@ -20,21 +20,35 @@ class Train {
   template <class Recorder>
   void Record(Recorder& recorder) {
     const double number = static_cast<double>(next_);
-    vehicles_.position_m = {number, number + 1.0, number + 2.0};
-    vehicles_.details[0].position.z[0] = number;
-    values_ = {number, -number, 0.0, 7.0};
-    ledger_.kinetic_j = number;
-    recorder.Record(TrainRecord{0.01 * number, next_, number, number, vehicles_, values_, values_, values_,
-                                values_, values_, next_, next_ % 5 == 0 ? &ledger_ : nullptr});
+    const std::vector<double> values = {number, -number, 0.0, 7.0};
+    record_.time_s = 0.01 * number;
+    record_.exchange = record_.state_digest = next_;
+    record_.mean_speed_mps = record_.mean_position_m = number;
+    record_.vehicles.position_m = {number, number + 1.0, number + 2.0};
+    record_.vehicles.details[0].position.z[0] = number;
+    Fill(values);
+    record_.ledger.reset();
+    if (next_ % 5 == 0) record_.ledger.emplace().kinetic_j = number;
+    recorder.Record(record_);
     ++next_;
-    values_.assign(4, -1.0);
+    Fill(std::vector<double>(4, -1.0));
   }
 
  private:
+  void Fill(const std::vector<double>& values) {
+    for (std::vector<double>* array :
+         {&record_.acceleration_mps2, &record_.held.coupler_force_n, &record_.held.cylinder_pressure_pa,
+          &record_.coupler_extension_m, &record_.cylinder_pressure_pa}) {
+      *array = values;
+    }
+  }
+
   std::uint64_t next_ = 0;
-  train_dynamics::ExchangeReply vehicles_{3, {1}};
-  std::vector<double> values_;
-  train_dynamics::EnergyLedger ledger_;
+  TrainRecord record_ = [] {
+    TrainRecord record;
+    record.vehicles = train_dynamics::VehicleRecords(3, {1});
+    return record;
+  }();
 };
 
 TEST(RecorderThread, RecordsEverythingInOrder) {
@@ -46,13 +60,13 @@ TEST(RecorderThread, RecordsEverythingInOrder) {
     EXPECT_EQ((std::vector<double>{number, number + 1.0, number + 2.0}), record.vehicles.position_m);
     EXPECT_EQ(number, record.vehicles.details.at(0).position.z[0]);
     for (const auto* values :
-         {&record.acceleration_mps2, &record.coupler_force_n, &record.coupler_extension_m,
-          &record.cylinder_pressure_pa, &record.held_pressure_pa}) {
+         {&record.acceleration_mps2, &record.held.coupler_force_n, &record.coupler_extension_m,
+          &record.cylinder_pressure_pa, &record.held.cylinder_pressure_pa}) {
       EXPECT_EQ((std::vector<double>{number, -number, 0.0, 7.0}), *values);
     }
     EXPECT_EQ(record.exchange, record.state_digest);
-    ASSERT_EQ(record.exchange % 5 == 0, record.ledger != nullptr);
-    if (record.ledger != nullptr) {
+    ASSERT_EQ(record.exchange % 5 == 0, record.ledger.has_value());
+    if (record.ledger) {
       EXPECT_EQ(number, record.ledger->kinetic_j);
     }
     seen.push_back(record.exchange);

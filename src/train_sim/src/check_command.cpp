@@ -78,7 +78,7 @@ void PrintScenario(const LoadedScenario& scenario) {
       });
   const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
   fmt::print("{}: {}\n", p.name, p.description);
-  Line("model", "{}", train_dynamics::ModelName(p.model));
+  Line("model", "{}", p.ModelNames());
   Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name,
        consist.vehicles(), 1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars,
        draw_bars);
@@ -181,9 +181,9 @@ int CheckScenario(const CheckOptions& options) {
   Line("memory", "about {:.0f} MB", kMega * run.memory_bytes);
   Line("bag", "{:.1f} MB, {:.2f} MB per second", kMega * run.bag_bytes,
        kMega * run.bag_bytes / params.duration_s);
-  if (options.nodes > 0 && params.model != VehicleModel::kTwoD) {
+  if (options.nodes > 0 && !params.Uses(VehicleModel::kTwoD)) {
     warnings.push_back(fmt::format("--nodes {}: the {} model runs in the master; leave it out", options.nodes,
-                                   train_dynamics::ModelName(params.model)));
+                                   params.ModelNames()));
   } else if (options.nodes > 0) {
     WarnOfNodes(options, scenario.consist.vehicles(), warnings);
     const TrafficPrediction traffic =

@@ -40,7 +40,7 @@ LoadedScenario Load(const RunOptions& options) {
 }  // namespace
 
 int Threads(int asked, const LoadedScenario& scenario) {
-  return train_dynamics::UsefulThreads(scenario.params.model, scenario.consist.vehicles(),
+  return train_dynamics::UsefulThreads(scenario.params, 0, scenario.consist.vehicles(),
                                        asked > 0 ? asked : train_dynamics::UsableCores());
 }
 

@@ -140,18 +140,15 @@ TrafficPrediction PredictTraffic(const LoadedScenario& scenario, int nodes) {
   traffic.calls_per_s = nodes * exchanges_per_s;
   for (const train_dynamics::Rank& rank : train_dynamics::SplitRanks(vehicles, nodes)) {
     train_brake_msgs::StepRequest request;
-    request.coupler_force_n.resize(rank.count + 1);
-    request.cylinder_pressure_pa.resize(rank.count);
+    train_dynamics::ResizeLoads(rank.count, false, request);
     train_brake_msgs::StepResponse reply;
-    reply.head_displacement_m.resize(rank.count);
-    reply.head_velocity_mps.resize(rank.count);
+    train_dynamics::ResizeReply(rank.count, reply);
     traffic.bytes_to_nodes_per_s +=
         exchanges_per_s * (kRequestPrefix + ros::serialization::serializationLength(request));
     traffic.bytes_from_nodes_per_s +=
         exchanges_per_s * (kReplyPrefix + ros::serialization::serializationLength(reply));
   }
-  // Six arrays of eight bytes a vehicle in each record.
-  constexpr double kRecordBytes = 48.0;
+  constexpr double kRecordBytes = 8.0 * (train_dynamics::kRecordNumbers + 1);  // of a vehicle, and its digest
   const double wagon_bytes = ros::serialization::serializationLength(train_brake_msgs::WagonState());
   traffic.bytes_from_nodes_per_s +=
       records_per_s *

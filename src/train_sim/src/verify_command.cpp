@@ -183,8 +183,8 @@ void Comparison::Observe(const TrainRecord& record) {
   Check(recorded_.pressures(), record, pressures_, convert);
   Check(recorded_.forces(), record, forces_, convert);
   Check(recorded_.ledger(), record, ledger_, [&](auto& message) {
-    if (record.ledger != nullptr) train_results::Convert(record, *record.ledger, initial_j_, message);
-    return record.ledger != nullptr;
+    if (record.ledger) train_results::Convert(record, *record.ledger, initial_j_, message);
+    return record.ledger.has_value();
   });
   if (is_recorded_ && !Differs()) ++records_;
 }

@@ -16,13 +16,9 @@ namespace {
 using train_dynamics::ExchangeReply;
 using train_dynamics::ExchangeRequest;
 using train_dynamics::Rank;
-
-/// What of a record has been computed. The rest is NaN.
-enum class Computed {
-  kMotion,     ///< nothing has acted on the vehicles yet
-  kShoeForce,  ///< of forces and creepages this alone: LTD
-  kAll,
-};
+using train_dynamics::RecordInfo;
+using train_dynamics::StateRow;
+using train_dynamics::VehicleModel;
 
 template <class Values>
 bool AllFinite(const Values& values) {
@@ -34,38 +30,30 @@ class Unpacker {
  public:
   Unpacker(const Rank& rank, const std::string& when) : rank_(rank), when_(when) {}
 
-  template <class From, class To>
-  void Copy(const char* name, const From& from, To& to) const {
-    CheckSize(name, from.size(), static_cast<std::size_t>(rank_.count));
-    std::copy(from.begin(), from.end(), to.begin() + rank_.first);
+  /// What every exchange replies.
+  template <class Response>
+  void Reply(const Response& response, ExchangeReply& reply) const {
+    const auto always = [](std::size_t) { return true; };
+    train_dynamics::ForEachReplyField(
+        [&](const RecordInfo& field, const auto& from, auto& to) { Copy(field, from, always, to); }, response,
+        reply);
   }
 
-  void CopyFinite(const char* name, const std::vector<double>& from, std::vector<double>& to) const {
-    Copy(name, from, to);
-    CheckFinite(name, from);
-  }
-
-  void CheckFinite(const char* name, const std::vector<double>& from) const {
-    const auto wrong =
-        std::find_if(from.begin(), from.end(), [](double value) { return !std::isfinite(value); });
-    if (wrong != from.end()) {
-      Fail(fmt::format("replied {} = {} for vehicle {}", name, *wrong,
-                       rank_.first + 1 + (wrong - from.begin())));
-    }
-  }
-
-  void Record(const train_brake_msgs::RankRecord& record, Computed computed, ExchangeReply& reply) const {
-    CopyFinite("position_m", record.position_m, reply.position_m);
-    CopyFinite("speed_mps", record.speed_mps, reply.speed_mps);
-    Copy("shoe_force_n", record.shoe_force_n, reply.shoe_force_n);
-    Copy("wheel_force_n", record.wheel_force_n, reply.wheel_force_n);
-    Copy("creepage", record.creepage, reply.creepage);
-    Copy("state_digest", record.state_digest, reply.state_digest);
-    if (computed != Computed::kMotion) CheckFinite("shoe_force_n", record.shoe_force_n);
-    if (computed == Computed::kAll) {
-      CheckFinite("wheel_force_n", record.wheel_force_n);
-      CheckFinite("creepage", record.creepage);
-    }
+  /// @param models  [vehicle of the train]
+  /// @param moved   whether something has acted on the vehicles
+  void Record(const train_brake_msgs::RankRecord& record, const std::vector<VehicleModel>& models, bool moved,
+              ExchangeReply& reply) const {
+    train_dynamics::ForEachRecordField(
+        [&](const RecordInfo& field, const auto& from, auto& to) {
+          const auto is_computed = [&](std::size_t i) {
+            return train_dynamics::IsComputed(field.presence, models[rank_.first + i], moved);
+          };
+          Copy(field, from, is_computed, to);
+        },
+        record, reply);
+    CheckSize("state_digest", record.state_digest.size(), Count());
+    std::copy(record.state_digest.begin(), record.state_digest.end(),
+              reply.state_digest.begin() + rank_.first);
     auto from = record.details.begin();
     for (train_dynamics::WagonDetail& detail : reply.details) {
       if (detail.vehicle < rank_.first || detail.vehicle >= rank_.first + rank_.count) continue;
@@ -74,7 +62,7 @@ class Unpacker {
       }
       const train_brake_msgs::WagonState& message = *from++;
       train_brake_msgs::MessageToDetail(message, detail);
-      if (computed != Computed::kAll) continue;
+      if (!moved) continue;
       train_brake_msgs::ForEachField(detail, message, [&](const auto& values, const auto&) {
         if (AllFinite(values)) return;
         Fail(fmt::format("replied details of vehicle {} that are not finite", detail.vehicle + 1));
@@ -83,47 +71,35 @@ class Unpacker {
   }
 
   void Energies(const train_brake_msgs::RankRecord& record, ExchangeReply& reply) const {
-    const auto count = static_cast<std::size_t>(rank_.count);
-    CheckSize("kinetic_j", record.kinetic_j.size(), count);
-    CheckSize("potential_j", record.potential_j.size(), count);
-    CheckSize("gravity_work_j", record.gravity_work_j.size(), count);
-    CheckSize("traction_work_j", record.traction_work_j.size(), count);
-    CheckSize("dissipated_j", record.dissipated_j.size(), count * train_dynamics::kDissipations);
-    for (const auto* energies : {&record.kinetic_j, &record.potential_j, &record.gravity_work_j,
-                                 &record.traction_work_j, &record.dissipated_j}) {
-      if (!AllFinite(*energies)) Fail("replied energies that are not finite");
-    }
-    auto dissipated = record.dissipated_j.begin();
-    for (std::size_t i = 0; i < count; ++i) {
-      train_dynamics::VehicleEnergy& energy = reply.energy[rank_.first + i];
-      energy.kinetic = record.kinetic_j[i];
-      energy.potential = record.potential_j[i];
-      energy.work.gravity = record.gravity_work_j[i];
-      energy.work.traction = record.traction_work_j[i];
-      for (double& element : energy.work.dissipated) element = *dissipated++;
+    train_dynamics::ForEachEnergy(
+        [&](const train_dynamics::FieldInfo& field, const auto& energies) {
+          CheckSize(field.name, energies.size(), Count() * field.numbers);
+          if (!AllFinite(energies)) Fail("replied energies that are not finite");
+        },
+        record);
+    for (std::size_t i = 0; i < Count(); ++i) {
+      reply.energy[rank_.first + i] = train_dynamics::GetEnergy(i, record);
     }
   }
 
   /// @param last  the train's last rank
   void Snapshot(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes, const Rank& last,
                 ExchangeReply& reply) const {
-    const auto first = static_cast<std::uint64_t>(rank_.first),
-               count = static_cast<std::uint64_t>(rank_.count);
     train_dynamics::BlockSnapshot part;
     try {
       part = train_dynamics::DecodeBlockSnapshot(bytes);
     } catch (const train_dynamics::SnapshotError& e) {
       Fail(fmt::format("replied a snapshot that {}", e.what()));
     }
-    const std::size_t numbers = part.state.size() / count;
-    if (part.exchange != exchange || part.first != first || part.count != count || numbers == 0 ||
-        numbers * count != part.state.size()) {
+    if (part.exchange != exchange || part.first != static_cast<std::uint64_t>(rank_.first) ||
+        part.states.size() != Count()) {
       Fail("replied a snapshot of something else");
     }
-    if (!AllFinite(part.state)) Fail("replied a snapshot that is not finite");
-    reply.snapshot.resize((last.first + last.count) * numbers);
-    std::copy(part.state.begin(), part.state.end(),
-              reply.snapshot.begin() + static_cast<long>(first * numbers));
+    for (const StateRow& state : part.states) {
+      if (!AllFinite(state)) Fail("replied a snapshot that is not finite");
+    }
+    reply.snapshot.resize(last.first + last.count);
+    std::move(part.states.begin(), part.states.end(), reply.snapshot.begin() + rank_.first);
   }
 
   /// @param vehicle  place in the train, from 1
@@ -137,6 +113,22 @@ class Unpacker {
   [[noreturn]] void Fail(const std::string& what) const { throw RankFailure(rank_, when_, what); }
 
  private:
+  std::size_t Count() const { return static_cast<std::size_t>(rank_.count); }
+
+  /// @param is_computed  of vehicle i of the rank: whether its numbers must be finite
+  template <class From, class IsComputed>
+  void Copy(const RecordInfo& field, const From& from, const IsComputed& is_computed,
+            std::vector<double>& to) const {
+    const auto numbers = static_cast<std::size_t>(field.numbers);
+    CheckSize(field.name, from.size(), Count() * numbers);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const std::size_t vehicle = i / numbers;
+      if (std::isfinite(from[i]) || !is_computed(vehicle)) continue;
+      Fail(fmt::format("replied {} = {} for vehicle {}", field.name, from[i], rank_.first + 1 + vehicle));
+    }
+    std::copy(from.begin(), from.end(), to.begin() + rank_.first * field.numbers);
+  }
+
   void CheckSize(const char* name, std::size_t size, std::size_t expected) const {
     if (size != expected) {
       Fail(fmt::format("replied {} values of {}, {} are expected", size, name, expected));
@@ -153,10 +145,7 @@ std::string ExchangeText(std::uint64_t exchange) { return fmt::format("exchange 
 
 RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
                            const train_dynamics::ScenarioParams& scenario)
-    : configure(ranks.size()),
-      step(ranks.size()),
-      ranks_(ranks),
-      is_two_d_(scenario.model == train_dynamics::VehicleModel::kTwoD) {
+    : configure(ranks.size()), step(ranks.size()), ranks_(ranks), models_(scenario.VehicleModels()) {
   const std::string scenario_text = strict_config::Write(scenario);
   const std::uint64_t digest = train_dynamics::TextDigest(scenario_text);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -171,13 +160,8 @@ RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
   }
 }
 
-void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<double>& snapshot) {
-  const Rank& last = ranks_.back();
-  const std::size_t vehicles = last.first + last.count, numbers = snapshot.size() / vehicles;
-  if (numbers * vehicles != snapshot.size()) {
-    throw train_dynamics::SnapshotError(
-        fmt::format("has {} numbers, which is not a multiple of {} vehicles", snapshot.size(), vehicles));
-  }
+void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<StateRow>& snapshot) {
+  if (!snapshot.empty()) train_dynamics::CheckRows(snapshot, ranks_.back().first + ranks_.back().count);
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     train_brake_msgs::ConfigureRequest& request = configure[i].request;
     request.exchange = exchange;
@@ -186,9 +170,8 @@ void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<double>& sn
     train_dynamics::BlockSnapshot part;
     part.exchange = exchange;
     part.first = static_cast<std::uint64_t>(ranks_[i].first);
-    part.count = static_cast<std::uint64_t>(ranks_[i].count);
-    const auto begin = snapshot.begin() + static_cast<long>(part.first * numbers);
-    part.state.assign(begin, begin + static_cast<long>(part.count * numbers));
+    const auto begin = snapshot.begin() + ranks_[i].first;
+    part.states.assign(begin, begin + ranks_[i].count);
     request.snapshot = Encode(part);
   }
 }
@@ -199,9 +182,8 @@ void RankMessages::Unpack(ExchangeReply& reply) const {
     const train_brake_msgs::ConfigureResponse& response = configure[i].response;
     const Unpacker unpacker(ranks_[i], when);
     if (!response.ok) unpacker.Fail(response.message);
-    unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
-    unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
-    unpacker.Record(response.record, Computed::kMotion, reply);
+    unpacker.Reply(response, reply);
+    unpacker.Record(response.record, models_, false, reply);
     unpacker.Energies(response.record, reply);
   }
 }
@@ -211,21 +193,17 @@ void RankMessages::Pack(const ExchangeRequest& whole) {
 }
 
 void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs::StepRequest& part) const {
-  const auto force = whole.coupler_force_n.begin() + ranks_[rank].first;
-  const auto pressure = whole.cylinder_pressure_pa.begin() + ranks_[rank].first;
   part.exchange = whole.exchange;
   part.dt_s = whole.dt_s;
   part.steps = static_cast<std::uint32_t>(whole.steps);
   part.record = whole.record;
   part.ledger = whole.ledger;
   part.snapshot = whole.snapshot;
-  part.coupler_force_n.assign(force, force + ranks_[rank].count + 1);
-  part.cylinder_pressure_pa.assign(pressure, pressure + ranks_[rank].count);
+  train_dynamics::CopyLoads(whole, ranks_[rank].first, ranks_[rank].count, part);
 }
 
 void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
   const std::string when = ExchangeText(whole.exchange);
-  const Computed computed = is_two_d_ ? Computed::kAll : Computed::kShoeForce;
   reply.fault = {};
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const train_brake_msgs::StepResponse& response = step[i].response;
@@ -239,9 +217,8 @@ void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) co
       reply.fault = {static_cast<int>(response.fault_vehicle) - 1, response.fault};
       return;
     }
-    unpacker.CopyFinite("head_displacement_m", response.head_displacement_m, reply.head_displacement_m);
-    unpacker.CopyFinite("head_velocity_mps", response.head_velocity_mps, reply.head_velocity_mps);
-    if (whole.record) unpacker.Record(response.record, computed, reply);
+    unpacker.Reply(response, reply);
+    if (whole.record) unpacker.Record(response.record, models_, true, reply);
     if (whole.ledger) unpacker.Energies(response.record, reply);
     if (whole.snapshot) unpacker.Snapshot(whole.exchange + 1, response.snapshot, ranks_.back(), reply);
   }

@@ -4,6 +4,15 @@
 #include <utility>
 
 namespace ltd_master {
+namespace {
+
+template <class Loads, class Function>
+void ForEachArray(Loads& loads, const Function& function) {
+  function(loads.coupler_force_n);
+  train_dynamics::ForEachLoad([&](const train_dynamics::LoadInfo&, auto& array) { function(array); }, loads);
+}
+
+}  // namespace
 
 void RecoveryLog::Begin(std::uint64_t exchange, std::vector<Snapshot> snapshots) {
   exchange_ = exchange;
@@ -13,9 +22,9 @@ void RecoveryLog::Begin(std::uint64_t exchange, std::vector<Snapshot> snapshots)
 }
 
 void RecoveryLog::Add(const train_dynamics::ExchangeRequest& request) {
-  for (const std::vector<double>* array : {&request.coupler_force_n, &request.cylinder_pressure_pa}) {
-    inputs_.insert(inputs_.end(), array->begin(), array->end());
-  }
+  ForEachArray(request, [this](const std::vector<double>& array) {
+    inputs_.insert(inputs_.end(), array.begin(), array.end());
+  });
   ++size_;
 }
 
@@ -23,10 +32,10 @@ void RecoveryLog::Get(std::uint64_t i, train_dynamics::ExchangeRequest& request)
   request.exchange = exchange_ + i;
   request.record = request.ledger = request.snapshot = false;
   auto from = inputs_.begin() + static_cast<long>(i * (inputs_.size() / size_));
-  for (std::vector<double>* array : {&request.coupler_force_n, &request.cylinder_pressure_pa}) {
-    std::copy_n(from, array->size(), array->begin());
-    from += static_cast<long>(array->size());
-  }
+  ForEachArray(request, [&from](std::vector<double>& array) {
+    std::copy_n(from, array.size(), array.begin());
+    from += static_cast<long>(array.size());
+  });
 }
 
 }  // namespace ltd_master

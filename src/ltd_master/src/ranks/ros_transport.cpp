@@ -53,7 +53,7 @@ RosTransport::~RosTransport() = default;
 
 void RosTransport::Start(train_dynamics::ExchangeReply& reply) { Resume(0, {}, reply); }
 
-void RosTransport::Resume(std::uint64_t exchange, const std::vector<double>& snapshot,
+void RosTransport::Resume(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot,
                           train_dynamics::ExchangeReply& reply) {
   messages_->BeginAt(exchange, snapshot);
   std::vector<RecoveryLog::Snapshot> snapshots;

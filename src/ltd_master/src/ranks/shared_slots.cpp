@@ -9,8 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "train_dynamics/train/snapshot.h"
-#include "train_dynamics/vehicle/wagon.h"
+#include "train_dynamics/train/vehicle_block.h"
 
 namespace ltd_master {
 namespace {
@@ -22,8 +21,7 @@ constexpr std::uint32_t kTextRoom = 1024;  // [bytes] for a fault or a refusal
 
 std::uint32_t RequestRoom(int vehicles) {
   train_brake_msgs::StepRequest request;
-  request.coupler_force_n.resize(vehicles + 1);
-  request.cylinder_pressure_pa.resize(vehicles);
+  train_dynamics::ResizeLoads(vehicles, true, request);
   return ros::serialization::serializationLength(request);
 }
 
@@ -32,17 +30,13 @@ std::uint32_t ReplyRoom(int vehicles) {
   const auto count = static_cast<std::size_t>(vehicles);
   train_brake_msgs::StepResponse reply;
   train_brake_msgs::RankRecord& record = reply.record;
-  for (auto* array :
-       {&reply.head_displacement_m, &reply.head_velocity_mps, &record.position_m, &record.speed_mps,
-        &record.shoe_force_n, &record.wheel_force_n, &record.creepage, &record.kinetic_j, &record.potential_j,
-        &record.gravity_work_j, &record.traction_work_j}) {
-    array->resize(count);
-  }
+  train_dynamics::ResizeReply(count, reply);
+  train_dynamics::ResizeRecord(count, record);
+  train_dynamics::ResizeEnergies(count, record);
   record.state_digest.resize(count);
-  record.dissipated_j.resize(count * train_dynamics::kDissipations);
   record.details.resize(count);
   train_dynamics::BlockSnapshot snapshot;
-  snapshot.state.resize(count * sizeof(train_dynamics::WagonState<double>) / sizeof(double));
+  snapshot.states.assign(count, train_dynamics::StateRow(train_dynamics::MostStateNumbers()));
   reply.snapshot = train_dynamics::Encode(snapshot);
   return ros::serialization::serializationLength(reply) + kTextRoom;
 }

@@ -85,6 +85,12 @@ class Reader {
 
   template <class Enum>
   void Choice(const char* key, Enum& value, Choices<Enum> choices) {
+    std::optional<Enum> given;
+    Choice(key, given, choices);
+    if (given) value = *given;
+  }
+  template <class Enum>
+  void Choice(const char* key, std::optional<Enum>& value, Choices<Enum> choices) {
     std::vector<std::string> names;
     for (const auto& choice : choices) names.push_back(choice.first);
     if (const std::optional<std::size_t> index = ReadChoice(key, names))

@@ -31,6 +31,10 @@ class Validator {
     }
     Report(key, "must be one of its named values");
   }
+  template <class Enum>
+  void Choice(const char* key, std::optional<Enum> value, Choices<Enum> choices) {
+    if (value) Choice(key, *value, choices);
+  }
 
   template <class Struct>
   void Group(const char* key, Struct& value) {

@@ -32,6 +32,10 @@ class Writer {
       if (choice.second == value) return Text(key, choice.first);
     }
   }
+  template <class Enum>
+  void Choice(const char* key, std::optional<Enum> value, Choices<Enum> choices) {
+    if (value) Choice(key, *value, choices);
+  }
 
   template <class Struct>
   void Group(const char* key, Struct& value) {

@@ -111,12 +111,12 @@ std::string RoundedDown(double value) {
   return std::string(text, end.ptr);
 }
 
-/// The largest stable step of each kind of vehicle, none in an LTD model.
+/// The largest stable step of each kind of vehicle of the 2D model.
 std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
   std::vector<std::pair<std::string, double>> stable_steps;
-  if (scenario.model != VehicleModel::kTwoD) return stable_steps;
   std::set<std::string> judged;
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    if (scenario.ModelOfGroup(i) != VehicleModel::kTwoD) continue;
     const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
     if (!judged.insert(Write(vehicle)).second) continue;
     const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";

@@ -1,7 +1,9 @@
 #include "train_dynamics/train/vehicle_block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <variant>
 
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
@@ -21,11 +23,21 @@ WagonState<double> StartState(const Wagon& wagon, double origin_m, double speed_
   return StaticEquilibrium(wagon, origin_m, speed_mps);
 }
 
+VehicleEnergy EnergyOf(double kinetic_j, double potential_j, const VehicleWork<double>& work) {
+  VehicleEnergy energy;
+  energy.kinetic_j = kinetic_j;
+  energy.potential_j = potential_j;
+  energy.gravity_work_j = work.gravity;
+  energy.traction_work_j = work.traction;
+  energy.dissipated_j = work.dissipated;
+  return energy;
+}
+
 VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const Track& /*track*/, const LtdState<double>& s) {
-  return {KineticEnergy(vehicle, s), 0.0, s.work};
+  return EnergyOf(KineticEnergy(vehicle, s), 0.0, s.work);
 }
 VehicleEnergy EnergyOf(const Wagon& wagon, const Track& track, const WagonState<double>& s) {
-  return {KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work};
+  return EnergyOf(KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work);
 }
 
 void FillDetail(const VehicleBatch<LtdVehicle>& /*batch*/, int /*i*/, WagonDetail& /*detail*/) {}
@@ -68,35 +80,55 @@ std::string FaultOf(const Wagon& wagon, const Track& track, const WagonState<dou
 
 // ---- what they have in common ---------------------------------------------------------------------------------
 
-/// Vehicles of one model, in one batch for each run of equal vehicles.
+/// Equal vehicles, one behind the other. A model over lanes is one more alternative here.
+using Batch = std::variant<VehicleBatch<Wagon>, VehicleBatch<LtdVehicle>>;
+
+/// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
-class Block : public VehicleBlock {
+Batch MakeBatch(const Vehicle& vehicle, double speed_mps, const std::vector<double>& centre_m) {
+  auto state = StartState(vehicle, 0.0, speed_mps);
+  std::vector<typename VehicleBatch<Vehicle>::State> states;
+  for (const double at : centre_m) {
+    state.origin_m = at;
+    states.push_back(state);
+  }
+  return VehicleBatch<Vehicle>(vehicle, BestLaneKernels(), states);
+}
+
+Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,
+                const std::vector<double>& centre_m) {
+  const double speed_mps = scenario.InitialSpeed();
+  if (model == VehicleModel::kTwoD) return MakeBatch(Wagon(params), speed_mps, centre_m);
+  const bool with_inertia = model == VehicleModel::kLtd;
+  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator), speed_mps, centre_m);
+}
+
+/// Vehicles of this program's own models, in one batch for each run of equal vehicles.
+class BatchedBlock : public VehicleBlock {
  public:
-  /// @param make  a vehicle from its VehicleParams
-  template <class Make>
-  Block(const ScenarioParams& scenario, const Consist& consist, int first, int count, const Make& make)
+  BatchedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count)
       : track_(scenario.track), first_(first) {
     for (int i = first; i < first + count;) {
-      const int type = consist.vehicle_type[i], begin = i;
-      const Vehicle vehicle = make(consist.vehicle_types[type]);
-      auto state = StartState(vehicle, 0.0, scenario.InitialSpeed());
-      std::vector<typename VehicleBatch<Vehicle>::State> states;
-      for (; i < first + count && consist.vehicle_type[i] == type; ++i) {
-        state.origin_m = scenario.start_position_m + consist.centre_m[i];
-        states.push_back(state);
+      const int group = consist.vehicle_type[i], begin = i;
+      std::vector<double> centre_m;
+      for (; i < first + count && consist.vehicle_type[i] == group; ++i) {
+        centre_m.push_back(scenario.start_position_m + consist.centre_m[i]);
       }
-      runs_.push_back({begin, VehicleBatch<Vehicle>(vehicle, BestLaneKernels(), states)});
+      const VehicleModel model = scenario.ModelOfGroup(group);
+      runs_.push_back({begin, model, MakeBatch(model, consist.vehicle_types[group], scenario, centre_m)});
     }
   }
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
     bool sound = true;
     for (Run& run : runs_) {
-      const int at = offset + run.begin - first_;
-      const VehicleArrays arrays = {&request.coupler_force_n[at], &request.coupler_force_n[at + 1],
-                                    &request.cylinder_pressure_pa[at], &reply.head_displacement_m[at],
-                                    &reply.head_velocity_mps[at]};
-      sound &= run.batch.Advance(track_, request.dt_s, request.steps, arrays, request.record);
+      const std::size_t at = offset + run.begin - first_;
+      sound &= std::visit(
+          [&](auto& batch) {
+            return batch.Advance(track_, request.dt_s, request.steps, PlacesOf(request, at),
+                                 PlacesOf(static_cast<ReplyArrays&>(reply), at), request.record);
+          },
+          run.batch);
     }
     if (request.record) Report(offset, request.ledger, reply);
     return sound;
@@ -105,89 +137,101 @@ class Block : public VehicleBlock {
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override {
     for (const Run& run : runs_) {
       const std::size_t at = offset + run.begin - first_;
-      run.batch.Record({&reply.head_displacement_m[at], &reply.head_velocity_mps[at], &reply.position_m[at],
-                        &reply.speed_mps[at], &reply.shoe_force_n[at], &reply.wheel_force_n[at],
-                        &reply.creepage[at]});
-      run.batch.Digests(&reply.state_digest[at]);
-      if (!with_energy) continue;
-      for (int i = 0; i < run.batch.size(); ++i) {
-        reply.energy[at + i] = EnergyOf(run.batch.vehicle(), track_, run.batch.StateOf(i));
-      }
-    }
-    for (WagonDetail& detail : reply.details) {
-      for (const Run& run : runs_) {
-        const int i = detail.vehicle - run.begin;
-        if (i >= 0 && i < run.batch.size()) FillDetail(run.batch, i, detail);
-      }
+      std::visit(
+          [&](const auto& batch) {
+            batch.Record(PlacesOf(static_cast<ReplyArrays&>(reply), at),
+                         PlacesOf(static_cast<RecordArrays&>(reply), at));
+            batch.Digests(&reply.state_digest[at]);
+            for (int i = 0; with_energy && i < batch.size(); ++i) {
+              reply.energy[at + i] = EnergyOf(batch.vehicle(), track_, batch.StateOf(i));
+            }
+            for (WagonDetail& detail : reply.details) {
+              const int i = detail.vehicle - run.begin;
+              if (i >= 0 && i < batch.size()) FillDetail(batch, i, detail);
+            }
+          },
+          run.batch);
     }
   }
 
-  int NumbersPerVehicle() const override { return kNumbers; }
-
-  void Save(double* state) const override {
+  void Save(StateRow* rows) const override {
     for (const Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
-        const State vehicle = run.batch.StateOf(i);
-        std::memcpy(state, &vehicle, sizeof vehicle);
-      }
+      std::visit(
+          [&](const auto& batch) {
+            for (int i = 0; i < batch.size(); ++i, ++rows) {
+              const auto state = batch.StateOf(i);
+              rows->resize(batch.kNumbers);
+              std::memcpy(rows->data(), &state, sizeof state);
+            }
+          },
+          run.batch);
     }
   }
 
-  void Restore(const double* state) override {
+  void Restore(const StateRow* rows) override {
     for (Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
-        State vehicle;
-        std::memcpy(static_cast<void*>(&vehicle), state, sizeof vehicle);
-        run.batch.SetState(i, vehicle);
-      }
+      std::visit(
+          [&](auto& batch) {
+            for (int i = 0; i < batch.size(); ++i, ++rows) {
+              CheckNumbers(run, i, batch.kNumbers, rows->size());
+              auto state = batch.StateOf(i);
+              std::memcpy(static_cast<void*>(&state), rows->data(), sizeof state);
+              batch.SetState(i, state);
+            }
+          },
+          run.batch);
     }
   }
 
   VehicleFault FindFault() const override {
     for (const Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i) {
-        const auto state = run.batch.StateOf(i);
-        if (IsSound(run.batch.vehicle(), track_, state)) continue;
-        return {run.begin + i, FaultOf(run.batch.vehicle(), track_, state)};
-      }
+      const VehicleFault fault = std::visit(
+          [&run, this](const auto& batch) {
+            for (int i = 0; i < batch.size(); ++i) {
+              const auto state = batch.StateOf(i);
+              if (IsSound(batch.vehicle(), track_, state)) continue;
+              return VehicleFault{run.begin + i, FaultOf(batch.vehicle(), track_, state)};
+            }
+            return VehicleFault();
+          },
+          run.batch);
+      if (fault.vehicle >= 0) return fault;
     }
     return {};
   }
 
  private:
-  using State = typename VehicleBatch<Vehicle>::State;
-  static constexpr int kNumbers = sizeof(State) / sizeof(double);
-
-  /// Vehicles of one type, one behind the other.
+  /// Vehicles of one group, one behind the other.
   struct Run {
     int begin;  ///< index of the first in the train
-    VehicleBatch<Vehicle> batch;
+    VehicleModel model;
+    Batch batch;
   };
+
+  static void CheckNumbers(const Run& run, int i, std::size_t expected, std::size_t numbers) {
+    if (numbers == expected) return;
+    throw SnapshotError("has " + std::to_string(numbers) + " numbers of vehicle " +
+                        std::to_string(run.begin + i + 1) + ", but one of the " + ModelName(run.model) +
+                        " model has " + std::to_string(expected));
+  }
 
   Track track_;
   int first_;
   std::vector<Run> runs_;
 };
 
+template <class... Batches>
+constexpr int MostNumbers(const std::variant<Batches...>*) {
+  return std::max({Batches::kNumbers...});
+}
+
 }  // namespace
 
-void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& block, int vehicles) {
-  const std::size_t expected = static_cast<std::size_t>(vehicles) * block.NumbersPerVehicle();
-  if (snapshot.size() == expected) return;
-  throw SnapshotError("has " + std::to_string(snapshot.size()) + " numbers, but " + std::to_string(vehicles) +
-                      " vehicle(s) of this model have " + std::to_string(expected));
-}
+int MostStateNumbers() { return MostNumbers(static_cast<const Batch*>(nullptr)); }
 
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count) {
-  if (scenario.model == VehicleModel::kTwoD) {
-    return std::make_unique<Block<Wagon>>(scenario, consist, first, count,
-                                          [](const VehicleParams& params) { return Wagon(params); });
-  }
-  const bool with_inertia = scenario.model == VehicleModel::kLtd;
-  return std::make_unique<Block<LtdVehicle>>(
-      scenario, consist, first, count,
-      [&](const VehicleParams& params) { return LtdVehicle(params, with_inertia, scenario.integrator); });
+  return std::make_unique<BatchedBlock>(scenario, consist, first, count);
 }
 
 }  // namespace train_dynamics

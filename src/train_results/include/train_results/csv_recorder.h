@@ -16,7 +16,7 @@ namespace train_results {
 ///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
 ///   wagon_NNN.csv      one per detailed vehicle
 ///   couplers.csv       largest forces of every connection and when (at the end)
-///   vehicles.csv       end state of every vehicle (at the end)
+///   vehicles.csv       the last record of every vehicle (at the end)
 class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
@@ -43,7 +43,7 @@ class CsvRecorder {
   std::ofstream history_, pressures_;
   std::map<int, std::ofstream> wagons_;
   std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
-  std::vector<double> position_m_, speed_mps_;                   ///< at the last record
+  train_dynamics::RecordArrays last_;                            ///< the last record of the vehicles
 };
 
 }  // namespace train_results

@@ -30,7 +30,7 @@ std::string Presentable(std::string text);
 /// The field `exchange` of a message that begins with a header and that; nothing if it is too short for both.
 std::optional<std::uint64_t> ExchangeOf(const Bytes& message);
 
-/// Compares all fields but the header, in the order of the definition; NaN equals NaN.
+/// Compares all fields but the header, in the order of the definition, from which their names are; NaN equals NaN.
 /// @return where they differ; ends with the first array whose size differs
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::TrainState& repeated);
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::InTrainForces& repeated);

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "train_results/record_copy.h"
+#include "train_dynamics/train/train_master.h"
 
 namespace train_results {
 
@@ -39,7 +39,7 @@ class RecorderThread {
   void Work();
 
   Recorder recorder_;
-  std::array<RecordCopy, kQueue> queue_;  ///< record n is in n % kQueue
+  std::array<train_dynamics::TrainRecord, kQueue> queue_;  ///< record n is in n % kQueue
   std::mutex mutex_;
   std::condition_variable work_, room_;
   std::uint64_t queued_ = 0, recorded_ = 0;  ///< so far

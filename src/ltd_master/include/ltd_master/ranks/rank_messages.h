@@ -27,9 +27,9 @@ class RankMessages {
   std::vector<train_brake_msgs::Configure> configure;  ///< [rank]
   std::vector<train_brake_msgs::Step> step;            ///< [rank]
 
-  /// Where `configure` begins. @param snapshot  [vehicle][number]; empty: time 0
+  /// Where `configure` begins. @param snapshot  [vehicle]; empty: time 0
   /// @throws SnapshotError if it is not one of so many vehicles
-  void BeginAt(std::uint64_t exchange, const std::vector<double>& snapshot);
+  void BeginAt(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot);
   void Unpack(train_dynamics::ExchangeReply& reply) const;  ///< the replies of `configure`
 
   void Pack(const train_dynamics::ExchangeRequest& request);
@@ -40,7 +40,7 @@ class RankMessages {
 
  private:
   std::vector<train_dynamics::Rank> ranks_;
-  bool is_two_d_;
+  std::vector<train_dynamics::VehicleModel> models_;  ///< [vehicle]
 };
 
 }  // namespace ltd_master

@@ -66,7 +66,7 @@ class RosTransport : public train_dynamics::Transport {
   ~RosTransport() override;
 
   void Start(train_dynamics::ExchangeReply& reply) override;
-  void Resume(std::uint64_t exchange, const std::vector<double>& snapshot,
+  void Resume(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot,
               train_dynamics::ExchangeReply& reply) override;
   void Exchange(const train_dynamics::ExchangeRequest& request,
                 train_dynamics::ExchangeReply& reply) override;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wheelset_slip.h"
@@ -70,6 +72,11 @@ struct WagonState {
   BodyVector<T> velocity;
   VehicleWork<T> work;
 };
+
+static_assert(offsetof(WagonState<double>, position) == sizeof(double) &&
+                  offsetof(WagonState<double>, velocity) ==
+                      offsetof(WagonState<double>, position) + 3 * kBodies * sizeof(double),
+              "Wagon::kDigestedFields counts the numbers before positions and velocities");
 
 /// What a wagon shows of its last step, for records.
 template <class T>
@@ -249,20 +256,20 @@ T CouplerHeadVelocity(const Wagon& wagon, const WagonState<T>& s) {
 }
 
 template <class T>
-VehicleRecord<T> RecordOf(const Wagon& wagon, const WagonState<T>& s, const WagonOutput<T>& out) {
+VehicleRecord<T> RecordOf(const Wagon& /*wagon*/, const WagonState<T>& s, const WagonOutput<T>& out) {
   T shoes(0.0), wheels(0.0), creepage(0.0);
   for (int i = 0; i < kWheelsets; ++i) {
     shoes = shoes + out.shoe_force_n[i];
     wheels = wheels + out.creep_force_n[i];
     creepage = Select(Abs(out.creepage[i]) <= Abs(creepage), creepage, out.creepage[i]);  // keeps NaN
   }
-  return {CouplerHeadDisplacement(wagon, s),
-          CouplerHeadVelocity(wagon, s),
-          s.origin_m + s.position.x[kCarbody],
-          s.velocity.x[kCarbody],
-          shoes,
-          wheels,
-          creepage};
+  VehicleRecord<T> record;
+  record.position_m = s.origin_m + s.position.x[kCarbody];
+  record.speed_mps = s.velocity.x[kCarbody];
+  record.shoe_force_n = shoes;
+  record.wheel_force_n = wheels;
+  record.creepage = creepage;
+  return record;
 }
 
 /// Height and pitch of each body over the rail under it, from the state in which springs are unloaded.
