@@ -12,6 +12,7 @@ namespace train_dynamics {
 struct ConsistGroupParams {
   VehicleParams vehicle;
   int count = 1;
+  bool locomotive = false;           ///< the vehicles are locomotives: shown as such
   int vehicles_per_unit = 1;         ///< 2: pairs, as of draw-bar wagons
   ConnectionParams unit_connection;  ///< within a unit
 
@@ -19,6 +20,7 @@ struct ConsistGroupParams {
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
     v.Integer("count", count, Range{1, 100000, false, false});
+    v.Flag("locomotive", locomotive);
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
@@ -50,6 +52,7 @@ struct Consist {
 
   std::vector<VehicleParams> vehicle_types;
   std::vector<int> vehicle_type;  ///< [vehicle] index into vehicle_types
+  std::vector<int> locomotives;   ///< indices of vehicles, ascending
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling
