@@ -8,6 +8,7 @@
 
 #include "paper_vehicle.h"
 #include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/brake/shoe_friction.h"
 #include "train_dynamics/numeric/monotone_cubic.h"
@@ -19,7 +20,7 @@ constexpr double kPitch = 10.5;  // [m] between vehicles
 constexpr int kVehicles = 242;
 
 const AirBrakeParams& PaperBrake() {
-  static const AirBrakeParams brake = LoadPart<AirBrakeParams>("brakes/calibrated.yaml");
+  static const AirBrakeParams brake = LoadPart<BrakeSystemParams>("brakes/calibrated.yaml").empirical;
   return brake;
 }
 

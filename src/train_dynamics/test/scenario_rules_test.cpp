@@ -313,7 +313,7 @@ TEST_F(ScenarioRules, PressureTablesCountFromWhereTheyAreNamed) {
   const LoadedScenario loaded = LoadScenario(file, {});
   EXPECT_EQ(loaded.params.pressure_table, (root_ / "tables/t.csv").string());
   std::vector<double> pressure_pa;
-  loaded.pressures(0.5, pressure_pa);
+  BrakeSystem(loaded.pressures).PressuresAt(0.5, pressure_pa);
   EXPECT_NEAR(pressure_pa.at(0), 500.0, 1e-9);  // midway; the rounding of one interpolation
 
   const fs::path here = fs::current_path();

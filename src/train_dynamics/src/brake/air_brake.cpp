@@ -5,13 +5,17 @@
 #include <limits>
 #include <stdexcept>
 
+#include "train_dynamics/brake/brake_wave.h"
+#include "train_dynamics/numeric/instruction_set.h"
 #include "train_dynamics/numeric/monotone_cubic.h"
+#include "train_dynamics/vehicle_number.h"
 
 namespace train_dynamics {
 namespace {
 
 constexpr double kPaPerKpa = 1000.0;
-constexpr int kLanes = 8;  // the stride of the phases is a multiple of
+
+std::string Index(std::size_t i) { return "[" + std::to_string(i) + "]"; }
 
 /// How a command acts on the pipe and the cylinders, before distances are known.
 struct CommandEffect {
@@ -40,15 +44,24 @@ CommandEffect EffectOf(const BrakeCommand& command, const AirBrakeParams& params
           MonotoneCubic(s.reduction_kpa, s.rise_rate_per_s, reduction), 0.0, false};
 }
 
-/// Index from 0 of a source's vehicle.
-int SourceIndex(const BrakeSourceParams& source, int vehicles) {
-  const int index = source.vehicle > 0 ? source.vehicle - 1 : vehicles + source.vehicle;
-  if (index < 0 || index >= vehicles) {
-    throw std::invalid_argument("brake source " + source.name + " stands at vehicle " +
-                                std::to_string(source.vehicle) + ", but the train has " +
-                                std::to_string(vehicles));
+/// The places that a command acts on.
+std::vector<WaveSource> SourcesOf(const AirBrakeParams& params, bool is_release,
+                                  const std::vector<double>& vehicle_positions_m) {
+  const int vehicles = static_cast<int>(vehicle_positions_m.size());
+  std::vector<WaveSource> sources;
+  for (const BrakeSourceParams& source : params.sources) {
+    const int at = VehicleIndex(source.vehicle, vehicles);
+    if (at < 0) {
+      throw std::invalid_argument("brake source " + source.name + " stands at vehicle " +
+                                  std::to_string(source.vehicle) + ", but the train has " +
+                                  std::to_string(vehicles));
+    }
+    if (is_release && !source.releases) continue;
+    sources.push_back(
+        {vehicle_positions_m[at], is_release ? source.release_delay_s : source.application_delay_s});
   }
-  return index;
+  if (sources.empty()) throw std::invalid_argument("no brake source releases the brakes");
+  return sources;
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -70,6 +83,46 @@ bool ServiceApplicationParams::Ascending(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
+std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands,
+                                                    int vehicles) const {
+  std::vector<BrokenRule> broken;
+  constexpr std::size_t kMostArrivals = 10000000;  // a second and half a gigabyte
+  const std::size_t per_command = sources.size() * static_cast<std::size_t>(vehicles);
+  if (commands.size() * per_command > kMostArrivals) {
+    broken.push_back({"commands",
+                      "must list at most " + std::to_string(kMostArrivals / per_command) + " commands for " +
+                          std::to_string(vehicles) + " vehicles and " + std::to_string(sources.size()) +
+                          " brake sources",
+                      {"brake", "train"}});
+    return broken;
+  }
+  const std::vector<double>& measured = service.reduction_kpa;
+  const bool releases = std::any_of(sources.begin(), sources.end(),
+                                    [](const BrakeSourceParams& source) { return source.releases; });
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const BrakeCommand& command = commands[i];
+    if (command.kind == BrakeCommandKind::kApply && !measured.empty() &&
+        !(command.reduction_kpa >= measured.front() && command.reduction_kpa <= measured.back())) {
+      const Range range{measured.front(), measured.back(), false, false};
+      broken.push_back({"commands" + Index(i) + ".reduction_kpa",
+                        range.Rule() + " (brake.service.reduction_kpa)",
+                        {"brake"}});
+    }
+    if (command.kind == BrakeCommandKind::kRelease && !releases) {
+      broken.push_back({"brake",
+                        "must have a source that releases the brakes, as commands" + Index(i) + " demands",
+                        {"commands"}});
+    }
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const BrakeSourceParams& source = sources[i];
+    if (VehicleIndex(source.vehicle, vehicles) >= 0) continue;
+    const std::string which = source.name.empty() ? "" : " (" + source.name + ")";
+    broken.push_back({"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {"train"}});
+  }
+  return broken;
+}
+
 AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
                    const std::vector<double>& vehicle_positions_m) {
   const int n = static_cast<int>(vehicle_positions_m.size());
@@ -79,17 +132,10 @@ AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>
     if (command.time_s < last_time) throw std::invalid_argument("the times of brake commands must ascend");
     last_time = command.time_s;
     const CommandEffect effect = EffectOf(command, params);
+    const std::vector<WaveSource> sources = SourcesOf(params, effect.is_release, vehicle_positions_m);
     for (int i = 0; i < n; ++i) {
-      double arrival = kInfinity, distance = 0.0;
-      for (const BrakeSourceParams& source : params.sources) {
-        const int at = SourceIndex(source, n);
-        if (effect.is_release && !source.releases) continue;
-        const double d = std::abs(vehicle_positions_m[i] - vehicle_positions_m[at]);
-        const double delay = effect.is_release ? source.release_delay_s : source.application_delay_s;
-        const double t = command.time_s + delay + d / effect.wave_speed_mps;
-        if (t < arrival) arrival = t, distance = d;
-      }
-      if (arrival == kInfinity) throw std::invalid_argument("no brake source releases the brakes");
+      const auto [arrival, distance] =
+          FirstWave(command.time_s, vehicle_positions_m[i], sources, effect.wave_speed_mps);
       const double rate = effect.rate_per_s - effect.rate_fall_per_s_m * distance;
       if (!(rate > 0.0)) {
         throw std::invalid_argument("the emergency rise rate falls to zero " + std::to_string(distance) +
@@ -105,7 +151,7 @@ AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>
   std::size_t most = 0;
   for (const std::vector<Phase>& phases : vehicles) most = std::max(most, phases.size());
   vehicles_ = n;
-  stride_ = (n + kLanes - 1) / kLanes * kLanes;
+  stride_ = PaddedToLanes(n);
   for (std::size_t phase = 0; phase < most; ++phase) {
     for (int i = 0; i < stride_; ++i) {
       const bool has = i < n && phase < vehicles[i].size();

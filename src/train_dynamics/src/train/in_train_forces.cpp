@@ -1,7 +1,6 @@
 #include "train_dynamics/train/in_train_forces.h"
 
 #include "train_dynamics/train/snapshot.h"
-#include "train_dynamics/vehicle/lane_kernels.h"
 
 namespace train_dynamics {
 
@@ -15,26 +14,38 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
   }
   const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
   for (Set& set : sets_) {
-    set.Resize(PaddedToLanes(static_cast<int>(set.place.size())));
-    const bool has_slack = set.type.kind == ConnectionKind::kDraftGears;
-    const double extension_m = has_slack ? side * set.type.gear.params.slack_m : 0.0;
-    for (std::size_t i = 0; i < set.place.size(); ++i) set.extension_m[i] = set.stick_m[i] = extension_m;
+    set.Begin(side * std::visit([](const auto& law) { return law.Slack(); }, set.law));
   }
 }
 
-void InTrainForces::Set::Resize(int padded) {
+void InTrainForces::Set::Begin(double at_m) {
+  const int padded = PaddedToLanes(static_cast<int>(place.size()));
   for (std::vector<double>* array :
-       {&start_extension_m, &next_extension_m, &rate_mps, &extension_m, &force_n, &elastic_n, &stick_m,
-        &stick_n, &tension_n, &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
+       {&start_extension_m, &next_extension_m, &rate_mps, &extension_m, &force_n, &elastic_n, &tension_n,
+        &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
     array->assign(padded, 0.0);
   }
+  extension_m.assign(padded, at_m);
+  const auto remember = [&](const auto& of) {
+    using Law = std::decay_t<decltype(of)>;
+    auto begin = Law::template Memory<double>::At(at_m);
+    begin.ForEachField([&](double field) { memory.insert(memory.end(), padded, field); });
+  };
+  std::visit(remember, law);
 }
 
 ConnectionArrays InTrainForces::Set::Arrays() {
-  return {rate_mps.data(),           extension_m.data(),    force_n.data(),
-          elastic_n.data(),          stick_m.data(),        stick_n.data(),
-          tension_n.data(),          tension_time_s.data(), compression_n.data(),
-          compression_time_s.data(), dissipated_j.data()};
+  return {Padded(),
+          rate_mps.data(),
+          extension_m.data(),
+          memory.data(),
+          force_n.data(),
+          elastic_n.data(),
+          tension_n.data(),
+          tension_time_s.data(),
+          compression_n.data(),
+          compression_time_s.data(),
+          dissipated_j.data()};
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
@@ -56,8 +67,10 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
       const int c = set.place[i];
       set.rate_mps[i] = head_velocity_mps[c] - head_velocity_mps[c + 1];
     }
-    BestLaneKernels().connection_forces(set.type, prediction_s_, time_s,
-                                        static_cast<int>(set.rate_mps.size()), set.Arrays());
+    const auto evaluate = [&](const auto& law) {
+      BestConnectionKernels().Of(law).forces(law, prediction_s_, time_s, set.Arrays());
+    };
+    std::visit(evaluate, set.law);
     for (std::size_t i = 0; i < count; ++i) force_n[set.place[i] + 1] = set.force_n[i];
   }
 }
@@ -70,8 +83,10 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
       set.next_extension_m[i] =
           set.start_extension_m[i] + (head_displacement_m[c] - head_displacement_m[c + 1]);
     }
-    BestLaneKernels().connection_work(static_cast<int>(set.rate_mps.size()), set.next_extension_m.data(),
-                                      set.Arrays());
+    const auto book = [&](const auto& law) {
+      BestConnectionKernels().Of(law).work(law, set.next_extension_m.data(), set.Arrays());
+    };
+    std::visit(book, set.law);
   }
 }
 
@@ -92,26 +107,27 @@ std::vector<ForceExtremes> InTrainForces::Extremes() const {
   return extremes;
 }
 
-void InTrainForces::AddMemoryTo(Digest& digest) const {
-  for (const Place& place : places_) {
-    const Set& set = sets_[place.set];
-    const bool remembers = set.type.kind == ConnectionKind::kDraftGears &&
-                           set.type.gear.params.friction == DraftGearFriction::kStickSpring;
-    if (!remembers) continue;
-    digest.Add(set.stick_m[place.at]);
-    digest.Add(set.stick_n[place.at]);
+template <class OfSet, class Function>
+void InTrainForces::ForEachField(OfSet& set, int at, Function& function) {
+  for (std::size_t i = static_cast<std::size_t>(at); i < set.memory.size(); i += set.rate_mps.size()) {
+    function(set.memory[i]);
   }
+}
+
+void InTrainForces::AddMemoryTo(Digest& digest) const {
+  MemoryDigest add(digest);
+  for (const Place& place : places_) ForEachField(sets_[place.set], place.at, add);
 }
 
 template <class Self, class Function>
 void InTrainForces::ForEachMemory(Self& self, Function& function) {
   for (const Place& place : self.places_) {
     auto& set = self.sets_[place.set];
-    for (auto* array :
-         {&set.start_extension_m, &set.extension_m, &set.stick_m, &set.stick_n, &set.dissipated_j,
-          &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
+    for (auto* array : {&set.start_extension_m, &set.extension_m, &set.dissipated_j, &set.tension_n,
+                        &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
       function((*array)[place.at]);
     }
+    ForEachField(set, place.at, function);
   }
 }
 
@@ -131,14 +147,12 @@ ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
-    const double q = set.extension_m[place.at];
-    if (set.type.kind == ConnectionKind::kDrawBar) {
-      energy.potential += 0.5 * set.type.bar.stiffness_n_per_m * q * q;
-      energy.draw_bars += set.dissipated_j[place.at];
-    } else {
-      energy.potential += GearEnergy(set.type.gear.params, q);
-      energy.draft_gears += set.dissipated_j[place.at];
-    }
+    const auto book = [&](const auto& law) {
+      energy.potential += StoredEnergy(law, set.extension_m[place.at]);
+      (law.kAccount == ConnectionAccount::kDrawBars ? energy.draw_bars : energy.draft_gears) +=
+          set.dissipated_j[place.at];
+    };
+    std::visit(book, set.law);
   }
   return energy;
 }

@@ -8,7 +8,7 @@
 namespace train_dynamics {
 namespace {
 
-constexpr std::uint64_t kFormatVersion = 1;  // rises when the fields or their meaning change
+constexpr std::uint64_t kFormatVersion = 2;  // rises when the fields or their meaning change
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -85,6 +85,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.state_digest);
   writer.Add(checkpoint.vehicles);
   writer.Add(checkpoint.connections);
+  writer.Add(checkpoint.brake);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
   return Finish(writer);
@@ -98,6 +99,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.state_digest = reader.Word();
   checkpoint.vehicles = reader.Numbers();
   checkpoint.connections = reader.Numbers();
+  checkpoint.brake = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();
   reader.End();

@@ -7,10 +7,10 @@
 namespace train_dynamics {
 
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
-                         PressureSource pressures)
+                         BrakeSystem brake)
     : scenario_(scenario),
       transport_(transport),
-      pressures_(std::move(pressures)),
+      brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
       reply_(consist.vehicles(), scenario.DetailedVehicles()),
@@ -37,6 +37,9 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
                         ", and duration_s ends with exchange " + std::to_string(scenario_.Exchanges()));
   }
   forces_.SetMemory(checkpoint.connections);
+  MemoryReader brake(checkpoint.brake);
+  brake_.ForEachField(brake);
+  brake.End();
   transport_.Resume(checkpoint.exchange, checkpoint.vehicles, reply_);
   last_speed_mps_ = reply_.speed_mps;
   exchange_ = first_exchange_ = checkpoint.exchange;
@@ -54,13 +57,16 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   checkpoint.state_digest = digest_;
   checkpoint.vehicles = reply_.snapshot;
   checkpoint.connections = forces_.Memory();
+  MemoryWriter brake;
+  BrakeSystem(brake_).ForEachField(brake);  // of a copy: the list of fields is written for changing them, too
+  checkpoint.brake = brake.Take();
   return checkpoint;
 }
 
 void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
-  pressures_(middle_s, request_.cylinder_pressure_pa);
+  brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
 
   const std::uint64_t next = exchange_ + 1;
   request_.exchange = exchange_;
@@ -92,6 +98,7 @@ void TrainMaster::ShowRecord() {
   digest.Add(digest_);
   for (std::uint64_t vehicle : reply_.state_digest) digest.Add(vehicle);
   forces_.AddMemoryTo(digest);
+  brake_.ForEachField(MemoryDigest(digest));
   digest_ = digest.value();
 
   EnergyLedger ledger;
@@ -102,7 +109,7 @@ void TrainMaster::ShowRecord() {
     momentum += mass_kg_[i] * reply_.speed_mps[i];
     moment += mass_kg_[i] * reply_.position_m[i];
   }
-  pressures_(time_s(), record_pressure_pa_);
+  brake_.PressuresAt(time_s(), record_pressure_pa_);
   forces_.Extensions(extension_m_);
   const TrainRecord record{time_s(),
                            exchange_,

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/judgement.h"
 #include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/parameters.h"
 
@@ -90,7 +92,6 @@ struct BrakeSourceParams {
 
 /// A conventional automatic air brake, as an empirical model over measured data.
 struct AirBrakeParams {
-  std::string name;
   std::vector<BrakeSourceParams> sources;
   ServiceApplicationParams service;
   EmergencyApplicationParams emergency;
@@ -98,7 +99,6 @@ struct AirBrakeParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
     v.List("sources", sources);
     v.Group("service", service);
     v.Group("emergency", emergency);
@@ -106,25 +106,9 @@ struct AirBrakeParams {
     v.Check(!sources.empty(), "sources", "must list at least one source");
     v.Check(sources.size() <= 100, "sources", "must list at most 100 sources");
   }
-};
 
-enum class BrakeCommandKind { kApply, kEmergency, kRelease };
-
-/// What the driver does with the brake, and when.
-struct BrakeCommand {
-  double time_s = kRequired;
-  BrakeCommandKind kind = BrakeCommandKind::kApply;
-  double reduction_kpa = kRequired;  ///< of the pipe in total, for kApply only
-
-  template <class Visitor>
-  void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
-    v.Choice("kind", kind,
-             {{"apply", BrakeCommandKind::kApply},
-              {"emergency", BrakeCommandKind::kEmergency},
-              {"release", BrakeCommandKind::kRelease}});
-    if (kind == BrakeCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
-  }
+  /// What commands break in a train of so many vehicles, by the keys of a scenario.
+  std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
 };
 
 /// Every vehicle's cylinder as phases, in each of which its pressure tends to a target:
@@ -172,11 +156,7 @@ T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
 
 /// Cylinder pressures of a train under a list of driver commands (paper Eq 2).
 ///
-/// A command reaches vehicle i when the first wave does:
-///
-///   t_d,i = t_command + min over sources (delay of the source + distance / wave speed)
-///
-/// From then on, with p_m the pressure at that moment,
+/// A command reaches vehicle i when the first wave does (t_d,i of FirstWave in brake/brake_wave.h). From then on, with p_m the pressure at that moment,
 ///
 ///   application: p = p_m + (p_s - p_m)(1 - exp(-beta (t - t_d,i))),  limited to [p_m, p_s]
 ///   release:     p = p_m exp(-beta_r (t - t_d,i))

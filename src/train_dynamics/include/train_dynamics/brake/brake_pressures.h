@@ -1,16 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "train_dynamics/brake/air_brake.h"
-#include "train_dynamics/train/consist.h"
-#include "train_dynamics/train/scenario.h"
 
 namespace train_dynamics {
-
-/// Cylinder pressure of each vehicle [Pa] at a time [s].
-using PressureSource = std::function<void(double time_s, std::vector<double>& pressure_pa)>;
 
 /// The pressures of an air brake on a grid of times t_h = h dt, by recurrence.
 ///
@@ -29,7 +23,11 @@ class BrakePressures {
   BrakePressures(AirBrake brake, double dt_s, int steps);
 
   /// @param time_s  the grid's time nearest to it is meant, t >= 0
-  void At(double time_s, std::vector<double>& pressure_pa);
+  void PressuresAt(double time_s, std::vector<double>& pressure_pa);
+
+  /// The pressures are a function of time alone: there is no state.
+  template <class Function>
+  void ForEachField(Function&& /*field*/) {}
 
  private:
   void BeginWindow(long window);
@@ -43,9 +41,5 @@ class BrakePressures {
   long at_ = 0;                                     ///< step that gap_pa_ is of
   std::vector<double> target_pa_, gap_pa_, decay_;  ///< [vehicle], filled up to whole packs of lanes
 };
-
-/// The air brake of a scenario, which must have one, as a source of pressures: at the middle of every exchange
-/// and at every record. A window is a record interval.
-PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
 
 }  // namespace train_dynamics

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "train_dynamics/coupler/connection_law.h"
 #include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/parameters.h"
@@ -54,13 +55,6 @@ struct DraftGearParams {
   double TanWedge() const;
 };
 
-/// Force of a connection [N] and the elastic part of it; both tension positive.
-template <class T>
-struct GearForce {
-  T force;
-  T elastic;
-};
-
 /// What is constant in a connection of two draft gears.
 struct DraftGear {
   explicit DraftGear(const DraftGearParams& gear) : params(gear), tan_wedge(gear.TanWedge()) {}
@@ -93,61 +87,6 @@ T GearStopForce(const DraftGearParams& p, T travel) {
 template <class T>
 T GearTravel(const DraftGearParams& p, T q) {
   return 0.5 * Max(T(0.0), Abs(q) - 0.5 * p.slack_m);
-}
-
-/// Force of a connection with smooth friction (paper Eq 4).
-///
-///   e = max(|q| - slack/2, 0),  d = e/2,  w = sign(q) q'/2
-///   F = sign(q) [ F_s(d) tan(phi) / (tan(phi) - mu(w) tanh(w / v_e)) + F_stop(d) ]
-///
-/// Loading (w > 0) gives a larger force than the spring's, unloading a smaller one, so that (F - F_elastic)
-/// q' >= 0: the gear only dissipates. Continuous in q and q'; it has no true stick: a standing connection
-/// settles at its spring force. v_e must stay above 2 F_s mu_s dt / (tan(phi) m), about 9 mm/s at 900 kN, 1
-/// ms and 160 t.
-///
-/// @param q       extension relative to the unstretched length [m], tension positive; the slack is +-slack/2
-/// @param q_rate  its rate [m/s]
-template <class T>
-GearForce<T> SmoothGearForce(const DraftGear& gear, T q, T q_rate) {
-  const DraftGearParams& p = gear.params;
-  const T travel = GearTravel(p, q);
-  const T rate = CopySign(T(0.5), q) * q_rate;
-  const T spring = GearSpringForce(p, travel);
-  const T mu = GearFrictionCoefficient(p, rate) * Tanh(rate * (1.0 / p.smoothing_speed_mps));
-  const T stop = GearStopForce(p, travel);
-  const T with_friction = spring * gear.tan_wedge / (gear.tan_wedge - mu);
-  return {CopySign(with_friction + stop, q), CopySign(spring + stop, q)};
-}
-
-/// Memory of a connection with stick-spring friction.
-template <class T>
-struct StickState {
-  T q;      ///< extension at the last evaluation [m]
-  T force;  ///< force at the last evaluation, solid stop left out [N], tension positive
-};
-
-/// Force of a connection whose friction sticks: rate-independent in direction, with memory.
-///
-///   F_n = clamp(F_(n-1) + k_stick (q_n - q_(n-1)), unloading branch, loading branch)
-///   branches: F_s tan(phi) / (tan(phi) +- mu),  mu = mu_k + (mu_s - mu_k) exp(-|w| / v_s)
-///
-/// With mu_s = mu_k the path of the force depends on the path of q alone, not on its speed. With a steep drop
-/// from static to kinetic friction a long train becomes CHAOTIC: a start speed changed by 1e-10 km/h moves
-/// later peaks by tens of kN. Study such trains statistically and never compare them point by point.
-template <class T>
-GearForce<T> StickSpringGearForce(const DraftGear& gear, T q, T q_rate, StickState<T>& state) {
-  const DraftGearParams& p = gear.params;
-  const T travel = GearTravel(p, q);
-  const T spring = GearSpringForce(p, travel);
-  const T mu = GearFrictionCoefficient(p, T(0.5) * q_rate);
-  const T loading = spring * gear.tan_wedge / (gear.tan_wedge - mu);
-  const T unloading = spring * gear.tan_wedge / (gear.tan_wedge + mu);
-  const T lower = Select(q < T(0.0), -loading, unloading);
-  const T upper = Select(q < T(0.0), -unloading, loading);
-  state.force = Clamp(state.force + p.stick_stiffness_n_per_m * (q - state.q), lower, upper);
-  state.q = q;
-  const T stop = GearStopForce(p, travel);
-  return {state.force + CopySign(stop, q), CopySign(spring + stop, q)};
 }
 
 /// Elastic energy of a connection's two gears [J]: 2 times the integral of F_s + F_stop over d.

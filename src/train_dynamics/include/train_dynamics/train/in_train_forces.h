@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "train_dynamics/coupler/connection_kernels.h"
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/consist.h"
 
@@ -52,7 +53,7 @@ class InTrainForces {
   std::vector<ForceExtremes> Extremes() const;
   /// Extension of each connection at the last exchange [m].
   void Extensions(std::vector<double>& extension_m) const;
-  /// Adds the memory of stick-spring draft gears, which is part of the train's state.
+  /// Adds the memory of the laws, which is part of the train's state.
   void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
 
@@ -64,14 +65,17 @@ class InTrainForces {
  private:
   /// The connections of one type, side by side, filled up to whole packs of lanes.
   struct Set {
-    explicit Set(const ConnectionParams& params) : type(params) {}
-    void Resize(int padded);
+    explicit Set(const ConnectionParams& params) : law(params.Law()) {}
+    /// Puts all connections to this extension, without force.
+    void Begin(double extension_m);
+    int Padded() const { return static_cast<int>(rate_mps.size()); }
     ConnectionArrays Arrays();
 
-    Connection type;
+    ConnectionLaw law;
     std::vector<int> place;  ///< [connection of the set] in the train
     std::vector<double> start_extension_m, next_extension_m;
-    std::vector<double> rate_mps, extension_m, force_n, elastic_n, stick_m, stick_n;
+    std::vector<double> rate_mps, extension_m, force_n, elastic_n;
+    std::vector<double> memory;  ///< of the law, [field][connection]
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
     std::vector<double> dissipated_j;
   };
@@ -80,6 +84,9 @@ class InTrainForces {
     int set, at;
   };
 
+  /// Calls function(number) for each number that the law of a connection remembers.
+  template <class OfSet, class Function>
+  static void ForEachField(OfSet& set, int at, Function& function);
   /// Calls function(number) for each number of the memory, connection by connection.
   template <class Self, class Function>
   static void ForEachMemory(Self& self, Function& function);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "train_dynamics/train/brake_pressures.h"
+#include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
@@ -38,7 +38,7 @@ class TrainMaster {
 
   /// Keeps references: scenario, consist and transport must outlive the master.
   TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
-              PressureSource pressures);
+              BrakeSystem brake);
 
   /// Called for every record, the one at time 0 included.
   void AddObserver(Observer observer) { observers_.push_back(std::move(observer)); }
@@ -73,7 +73,7 @@ class TrainMaster {
 
   const ScenarioParams& scenario_;
   Transport& transport_;
-  PressureSource pressures_;
+  BrakeSystem brake_;
   InTrainForces forces_;
   std::uint64_t exchange_ = 0, first_exchange_ = 0;
   std::uint64_t digest_ = 0;

@@ -1,0 +1,83 @@
+// The laws of connections over the lanes of each instruction set, held against the scalar ones.
+
+#include "train_dynamics/coupler/connection_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "paper_vehicle.h"
+
+namespace train_dynamics {
+namespace {
+
+constexpr int kCount = 16;
+
+// Sixteen connections of a law from deep compression to deep tension, at rest, opening and closing.
+struct Connections {
+  explicit Connections(const ConnectionLaw& law) {
+    for (const char* name : {"rate", "force", "elastic", "tension", "tension_time", "compression",
+                             "compression_time", "dissipated"}) {
+      numbers[name].assign(kCount, 0.0);
+    }
+    for (int i = 0; i < kCount; ++i) {
+      numbers["rate"][i] = 0.3 * std::sin(2.0 * i);
+      numbers["extension"].push_back(0.02 * (i - 8));
+    }
+    const auto remember = [&](const auto& of) {
+      auto memory = std::decay_t<decltype(of)>::template Memory<double>::At(0.0);
+      memory.ForEachField(
+          [&](double field) { numbers["memory"].insert(numbers["memory"].end(), kCount, field); });
+    };
+    std::visit(remember, law);
+  }
+  ConnectionArrays Arrays() {
+    const auto at = [&](const char* name) { return numbers[name].data(); };
+    return {kCount,          at("rate"),    at("extension"),    at("memory"),      at("force"),
+            at("elastic"),   at("tension"), at("tension_time"), at("compression"), at("compression_time"),
+            at("dissipated")};
+  }
+  std::map<std::string, std::vector<double>> numbers;
+};
+
+std::vector<ConnectionParams> AllConnections() {
+  std::vector<ConnectionParams> all;
+  for (const char* name : {"calibrated", "draw_bar"}) {
+    all.push_back(LoadPart<ConnectionParams>("couplers/" + std::string(name) + ".yaml"));
+  }
+  all.push_back(all.front());
+  all.back().draft_gear.friction = DraftGearFriction::kStickSpring;
+  return all;
+}
+
+TEST(ConnectionKernels, EveryInstructionSetGivesTheBitsOfTheScalarLaw) {
+  for (const ConnectionParams& params : AllConnections()) {
+    const ConnectionLaw law = params.Law();
+    for (const ConnectionKernels& kernels : AllConnectionKernels()) {
+      Connections connections(law), expected(law);
+      for (int exchange = 0; exchange < 5; ++exchange) {
+        std::vector<double> next_m(kCount);
+        for (int i = 0; i < kCount; ++i) {
+          next_m[i] = expected.numbers["extension"][i] + 1e-3 * expected.numbers["rate"][i];
+        }
+        const auto exchange_of = [&](const ConnectionKernels& with, Connections& of) {
+          const auto run = [&](const auto& type) {
+            with.Of(type).forces(type, 5e-4, 0.001 * exchange, of.Arrays());
+            with.Of(type).work(type, next_m.data(), of.Arrays());
+          };
+          std::visit(run, law);
+        };
+        exchange_of(kernels, connections);
+        exchange_of(AllConnectionKernels().back(), expected);
+        EXPECT_EQ(connections.numbers, expected.numbers) << params.name;
+      }
+      EXPECT_NE(expected.numbers["dissipated"], std::vector<double>(kCount, 0.0)) << params.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace train_dynamics
