@@ -205,16 +205,12 @@ TEST_F(ScenarioRules, BrakesThatDoNotSuitTheTrain) {
   const std::string file = Put("scenarios/a.yaml", "base: minimum\nbrake: vent_only\n");
   EXPECT_EQ(ErrorsOf(file),
             "scenarios/a.yaml:2: brake must have a source that releases the brakes, as commands[1] demands");
-  // With 0.1 1/s the rate, which falls by 0.1683 1/s over 2530.5 m, is zero 1504 m from the only source:
-  // within the train.
   Put("brakes/weak.yaml", "base: vent_only\nemergency: {rise_rate_per_s: 0.1}\n");
   Put("scenarios/b.yaml", "base: emergency\nbrake: weak\n");
-  const std::string errors = ErrorsOf(Scenario("b"));
-  EXPECT_EQ(
-      errors.find("scenarios/b.yaml:2: brake does not suit the train: the emergency rise rate falls to zero"),
-      0u)
-      << errors;
-  EXPECT_NE(errors.find("rise_rate_fall_per_s is too large for this train"), std::string::npos) << errors;
+  EXPECT_EQ(ErrorsOf(Scenario("b")),
+            "brakes/calibrated.yaml:23: brake.emergency.rise_rate_fall_per_s must be below rise_rate_per_s "
+            "(0.1), got "
+            "0.1683");
 }
 
 TEST_F(ScenarioRules, DipsUnderTheStandingTrain) {
@@ -363,6 +359,38 @@ TEST_F(ScenarioRules, WarnsOfFrictionTooSteepForTheStep) {
                 " 0.009 is below 0.0091822, the least for dt_s 0.001 at 900 kN and 1.6011e+05 kg: the "
                 "friction of the "
                 "draft gears may chatter; take a smaller dt_s");
+}
+
+TEST_F(ScenarioRules, WarnsOfCommandsWithoutEffectWhereTheyAreWritten) {
+  Put("scenarios/a.yaml",
+      "base: single_wagon_stop\ncommands:\n- {time_s: 2, kind: emergency}\n- {time_s: 7, kind: release}\n");
+  EXPECT_EQ(WarningsOf("a"),
+            "scenarios/a.yaml:4: commands[1] has no effect: the emergency of commands[0] holds until a "
+            "release at 62 s "
+            "or later (brake.emergency.blocking_time_s)");
+  Put("scenarios/b.yaml",
+      "base: single_wagon_stop\ncommands:\n- {time_s: 2, kind: apply, reduction_kpa: 90}\n- {time_s: 7, "
+      "kind: release}\n"
+      "- {time_s: 11, kind: apply, reduction_kpa: 60}\n");
+  EXPECT_EQ(WarningsOf("b").find("scenarios/b.yaml:5: commands[2] applies the brake again after a release"),
+            0u)
+      << WarningsOf("b");
+}
+
+TEST_F(ScenarioRules, ASmallerReductionNeedsASourceThatReleases) {
+  Put("scenarios/a.yaml",
+      "base: single_wagon_stop\nbrake: {base: single_vehicle, sources: [{vehicle: 1, releases: "
+      "false}]}\ncommands:\n"
+      "- {time_s: 2, kind: apply, reduction_kpa: 90}\n- {time_s: 7, kind: apply, reduction_kpa: 60}\n");
+  try {
+    LoadScenario(Put("scenarios/c.yaml", "base: a\n"), {});
+    ADD_FAILURE() << "was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("brake must have a source that releases the brakes, as commands[1] demands"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {

@@ -10,6 +10,16 @@ namespace train_dynamics {
 
 BrakePressures::BrakePressures(AirBrake brake, double dt_s, int steps)
     : brake_(std::move(brake)), dt_s_(dt_s), steps_(steps) {
+  TakePhases();
+}
+
+void BrakePressures::OpenPipe(double time_s, int connection) {
+  brake_.OpenPipe(time_s, connection);
+  TakePhases();
+}
+
+void BrakePressures::TakePhases() {
+  window_ = -1;
   const BrakePhases phases = brake_.Phases();
   begin_s_.assign(phases.begin_s, phases.begin_s + phases.phases * phases.stride);
   std::sort(begin_s_.begin(), begin_s_.end());

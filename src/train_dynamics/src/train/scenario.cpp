@@ -162,6 +162,10 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     leaves_out("track.dips", scenario.track.dips.size());
     leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
+  if (scenario.brake && scenario.pressure_table.empty()) {
+    const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands);
+    warnings.insert(warnings.end(), of_brake.begin(), of_brake.end());
+  }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";
     if (scenario.brake) warnings.push_back({"brake", "brake is" + unused});

@@ -22,14 +22,18 @@ class BrakePressures {
   /// @param steps  length of a window, >= 1
   BrakePressures(AirBrake brake, double dt_s, int steps);
 
+  /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
+  void OpenPipe(double time_s, int connection);
+
   /// @param time_s  the grid's time nearest to it is meant, t >= 0
   void PressuresAt(double time_s, std::vector<double>& pressure_pa);
 
-  /// The pressures are a function of time alone: there is no state.
+  /// The pressures are a function of time and of where the pipe is open, which the connections remember.
   template <class Function>
   void ForEachField(Function&& /*field*/) {}
 
  private:
+  void TakePhases();
   void BeginWindow(long window);
 
   AirBrake brake_;

@@ -32,6 +32,9 @@ struct BrakeSystemParams {
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
     return empirical.BrokenRules(commands, vehicles);
   }
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands) const {
+    return empirical.Warnings(commands);
+  }
 };
 
 /// The times at which pressures are asked for: middles of exchanges, and records.
@@ -42,6 +45,7 @@ struct PressureGrid {
 
 /// The brake of a train, one of a closed set of systems, chosen once per train. Each has
 ///
+///   OpenPipe(time_s, connection)       the brake pipe parts there: an emergency from both sides
 ///   PressuresAt(time_s, pressure_pa)   cylinder pressure of each vehicle [Pa]; times ascend
 ///   ForEachField(function)             calls function(number) for each number of its state
 ///
@@ -59,6 +63,9 @@ class BrakeSystem {
   /// Resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
     std::visit([&](auto& system) { system.PressuresAt(time_s + ahead_s_, pressure_pa); }, system_);
+  }
+  void OpenPipe(double time_s, int connection) {
+    std::visit([&](auto& system) { system.OpenPipe(time_s + ahead_s_, connection); }, system_);
   }
   /// From now on a time means one that is so much later.
   void MoveAhead(double seconds) { ahead_s_ += seconds; }
