@@ -98,6 +98,21 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"StickSpringsRemember",
                          "emergency",
                          {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
+                    Case{"DampedGearsRemember",
+                         "emergency",
+                         {"model=ltd", "duration_s=20", "train.connection=friction_gear"}},
+                    Case{"DifferentGearsRemember",
+                         "emergency",
+                         {"model=ltd", "duration_s=10", "train.connection=mt2_and_polymer"}},
+                    Case{"BuffersRemember",
+                         "emergency",
+                         {"model=ltd", "duration_s=10", "train.connection=side_buffers_b"}},
+                    // Broken connections, and the emergency that their open pipes are.
+                    Case{"PartedTrains",
+                         "full_service",
+                         {"model=ltd", "duration_s=60",
+                          "train.connection={base: friction_gear, strength_n: 8.0e4}"},
+                         0.9},
                     // After the wagon has come to rest: the summary remembers when it stopped.
                     Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
     [](const auto& c) { return std::string(c.param.name); });

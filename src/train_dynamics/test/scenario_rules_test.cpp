@@ -393,6 +393,33 @@ TEST_F(ScenarioRules, ASmallerReductionNeedsASourceThatReleases) {
   }
 }
 
+TEST_F(ScenarioRules, BadGearTablesAreToldAllAtOnceWithTheirLines) {
+  Put("couplers/bad.yaml",
+      "name: bad\nkind: table\ntable:\n  slack_m: 0.01\n  locked_stiffness_n_per_m: 1.0e6\n  loading:\n"
+      "    travel_m: [0, 0.01, 0.05]\n    force_n: [5000, 100000, 60000]\n  unloading:\n    travel_m: [0]\n  "
+      "  force_n: [0]\n"
+      "  compression:\n    loading:\n      travel_m: [0, 0.1]\n      force_n: [0, 50000]\n"
+      "    unloading:\n      travel_m: [0, 0.1]\n      force_n: [0, 60000]\n");
+  const std::string file =
+      Put("scenarios/a.yaml", "base: emergency\ntrain: {base: paper_242, connection: bad}\n");
+  const std::string errors = ErrorsOf(file);
+  for (const char* error :
+       {"couplers/bad.yaml:8: train.connection.table.loading.force_n must start at 0: at the end of the "
+        "slack there is no "
+        "force",
+        "couplers/bad.yaml:8: train.connection.table.loading.force_n must not descend",
+        "couplers/bad.yaml:10: train.connection.table.unloading.travel_m must list 2 to 32 points",
+        "couplers/bad.yaml:18: train.connection.table.compression.unloading.force_n must nowhere be above"}) {
+    EXPECT_NE(errors.find(error), std::string::npos) << error << "\nin\n" << errors;
+  }
+  // Two rules of the whole, once the curves are right.
+  Put("couplers/soft.yaml", "base: ge_standard_pair\ntable:\n  locked_stiffness_n_per_m: 1.0e7\n");
+  EXPECT_EQ(ErrorsOf(Put("scenarios/b.yaml", "base: emergency\ntrain: {base: paper_242, connection: soft}\n"))
+                .find("couplers/soft.yaml:3: train.connection.table.locked_stiffness_n_per_m must exceed the "
+                      "steepest slope"),
+            0u);
+}
+
 TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
   Put("t.csv", "time_s,vehicle_1_pa\n0,0\n1,1000\n");
   const std::string table = "pressure_table=" + (root_ / "t.csv").string();

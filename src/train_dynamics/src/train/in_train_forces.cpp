@@ -1,5 +1,7 @@
 #include "train_dynamics/train/in_train_forces.h"
 
+#include <algorithm>
+
 #include "train_dynamics/train/snapshot.h"
 
 namespace train_dynamics {
@@ -21,31 +23,49 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
 void InTrainForces::Set::Begin(double at_m) {
   const int padded = PaddedToLanes(static_cast<int>(place.size()));
   for (std::vector<double>* array :
-       {&start_extension_m, &next_extension_m, &rate_mps, &extension_m, &force_n, &elastic_n, &tension_n,
-        &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
+       {&start_extension_m, &next_extension_m, &rate_mps, &force_n, &elastic_n, &tension_n, &tension_time_s,
+        &compression_n, &compression_time_s, &dissipated_j}) {
     array->assign(padded, 0.0);
   }
   extension_m.assign(padded, at_m);
+  parted_s.assign(padded, -1.0);
   const auto remember = [&](const auto& of) {
-    using Law = std::decay_t<decltype(of)>;
-    auto begin = Law::template Memory<double>::At(at_m);
+    auto begin = of.AtRest(at_m);
+    stored_j.assign(padded, StoredEnergy(of, at_m, begin));
     begin.ForEachField([&](double field) { memory.insert(memory.end(), padded, field); });
   };
   std::visit(remember, law);
 }
 
 ConnectionArrays InTrainForces::Set::Arrays() {
-  return {Padded(),
-          rate_mps.data(),
-          extension_m.data(),
-          memory.data(),
-          force_n.data(),
-          elastic_n.data(),
-          tension_n.data(),
-          tension_time_s.data(),
-          compression_n.data(),
-          compression_time_s.data(),
-          dissipated_j.data()};
+  ConnectionArrays arrays{};
+  arrays.count = Padded();
+  arrays.strength_n = strength_n;
+  arrays.rate_mps = rate_mps.data();
+  arrays.extension_m = extension_m.data();
+  arrays.memory = memory.data();
+  arrays.force_n = force_n.data();
+  arrays.elastic_n = elastic_n.data();
+  arrays.tension_n = tension_n.data();
+  arrays.tension_time_s = tension_time_s.data();
+  arrays.compression_n = compression_n.data();
+  arrays.compression_time_s = compression_time_s.data();
+  arrays.stored_j = stored_j.data();
+  arrays.dissipated_j = dissipated_j.data();
+  arrays.parted_s = parted_s.data();
+  return arrays;
+}
+
+void InTrainForces::Set::Part(double time_s) {
+  const auto lose = [&](const auto& of) {
+    if (of.kStoresByMemory) return;  // booked by the work of the interval
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      if (parted_s[i] != time_s) continue;
+      auto memory_at = of.AtRest(extension_m[i]);  // does not count
+      dissipated_j[i] += StoredEnergy(of, extension_m[i], memory_at);
+    }
+  };
+  std::visit(lose, law);
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
@@ -71,6 +91,7 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
       BestConnectionKernels().Of(law).forces(law, prediction_s_, time_s, set.Arrays());
     };
     std::visit(evaluate, set.law);
+    if (set.strength_n > 0.0) set.Part(time_s);
     for (std::size_t i = 0; i < count; ++i) force_n[set.place[i] + 1] = set.force_n[i];
   }
 }
@@ -114,17 +135,33 @@ void InTrainForces::ForEachField(OfSet& set, int at, Function& function) {
   }
 }
 
+std::vector<Parting> InTrainForces::Partings() const {
+  std::vector<Parting> partings;
+  for (int c = 0; c < connections(); ++c) {
+    const double time_s = sets_[places_[c].set].parted_s[places_[c].at];
+    if (time_s >= 0.0) partings.push_back({c, time_s});
+  }
+  std::stable_sort(partings.begin(), partings.end(),
+                   [](const Parting& a, const Parting& b) { return a.time_s < b.time_s; });
+  return partings;
+}
+
 void InTrainForces::AddMemoryTo(Digest& digest) const {
   MemoryDigest add(digest);
-  for (const Place& place : places_) ForEachField(sets_[place.set], place.at, add);
+  for (const Place& place : places_) {
+    const Set& set = sets_[place.set];
+    ForEachField(set, place.at, add);
+    if (set.strength_n > 0.0) add(set.parted_s[place.at]);
+  }
 }
 
 template <class Self, class Function>
 void InTrainForces::ForEachMemory(Self& self, Function& function) {
   for (const Place& place : self.places_) {
     auto& set = self.sets_[place.set];
-    for (auto* array : {&set.start_extension_m, &set.extension_m, &set.dissipated_j, &set.tension_n,
-                        &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
+    for (auto* array :
+         {&set.start_extension_m, &set.extension_m, &set.stored_j, &set.dissipated_j, &set.parted_s,
+          &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
       function((*array)[place.at]);
     }
     ForEachField(set, place.at, function);
@@ -147,8 +184,14 @@ ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
+    const bool loose = set.parted_s[place.at] >= 0.0 && set.extension_m[place.at] > 0.0;
     const auto book = [&](const auto& law) {
-      energy.potential += StoredEnergy(law, set.extension_m[place.at]);
+      if (law.kStoresByMemory) {
+        energy.potential += set.stored_j[place.at];
+      } else if (!loose) {
+        auto memory = law.AtRest(set.extension_m[place.at]);  // does not count
+        energy.potential += StoredEnergy(law, set.extension_m[place.at], memory);
+      }
       (law.kAccount == ConnectionAccount::kDrawBars ? energy.draw_bars : energy.draft_gears) +=
           set.dissipated_j[place.at];
     };

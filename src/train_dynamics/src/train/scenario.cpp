@@ -169,6 +169,11 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";
     if (scenario.brake) warnings.push_back({"brake", "brake is" + unused});
+    if (train.connection.strength_n > 0.0) {
+      warnings.push_back({"train.connection.strength_n",
+                          "the brake pipe stays closed where a connection breaks: the pressures come from "
+                          "pressure_table"});
+    }
     if (!scenario.commands.empty())
       warnings.push_back({"commands", "commands (" + Counted(scenario.commands.size()) + ") are" + unused});
   }

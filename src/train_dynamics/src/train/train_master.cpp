@@ -16,6 +16,8 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       reply_(consist.vehicles(), scenario.DetailedVehicles()),
       acceleration_mps2_(consist.vehicles(), std::numeric_limits<double>::quiet_NaN()) {
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
+  for (const ConnectionParams& type : consist.connection_types)
+    can_part_ = can_part_ || type.strength_n > 0.0;
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
   request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
@@ -37,6 +39,7 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
                         ", and duration_s ends with exchange " + std::to_string(scenario_.Exchanges()));
   }
   forces_.SetMemory(checkpoint.connections);
+  OpenPipes();
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
   brake.End();
@@ -66,6 +69,7 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
 void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
+  if (can_part_) OpenPipes();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
 
   const std::uint64_t next = exchange_ + 1;
@@ -84,6 +88,13 @@ void TrainMaster::Exchange() {
   request_.snapshot = false;
   forces_.CloseInterval(reply_.head_displacement_m);
   if (request_.record) ShowRecord();
+}
+
+void TrainMaster::OpenPipes() {
+  const std::vector<Parting> partings = forces_.Partings();
+  for (; opened_pipes_ < partings.size(); ++opened_pipes_) {
+    brake_.OpenPipe(partings[opened_pipes_].time_s, partings[opened_pipes_].connection);
+  }
 }
 
 void TrainMaster::ShowRecord() {

@@ -3,43 +3,61 @@
 #include <string>
 #include <variant>
 
+#include "train_dynamics/coupler/damped_stick_gear.h"
 #include "train_dynamics/coupler/draw_bar.h"
+#include "train_dynamics/coupler/lugre_gear.h"
+#include "train_dynamics/coupler/side_buffers.h"
 #include "train_dynamics/coupler/smooth_gear.h"
 #include "train_dynamics/coupler/stick_spring_gear.h"
+#include "train_dynamics/coupler/table_gear.h"
+#include "train_dynamics/coupler/unequal_gears.h"
 
 namespace train_dynamics {
 
 /// The closed set of laws of the force between two vehicles; see connection_law.h. Chosen once per set of equal
 /// connections, never per connection.
 template <template <class...> class Of>
-using OfConnectionLaws = Of<DrawBar, SmoothGears, StickSpringGears>;
+using OfConnectionLaws =
+    Of<DrawBar, SmoothGears, StickSpringGears, DampedStickGears, LuGreGears, TableGear,
+       UnequalGears<FrictionDevice, FrictionDevice>, UnequalGears<FrictionDevice, TableDevice>,
+       UnequalGears<TableDevice, TableDevice>, SideBuffers>;
 
 using ConnectionLaw = OfConnectionLaws<std::variant>;
 
-enum class ConnectionKind { kDraftGears, kDrawBar };
+enum class ConnectionKind { kDraftGears, kDrawBar, kTable, kUnequalGears, kSideBuffers };
 
 /// What joins two neighbouring vehicles; exactly one of the devices is used.
 struct ConnectionParams {
   std::string name;
   ConnectionKind kind = ConnectionKind::kDraftGears;
+  /// Tension beyond which the connection breaks: from then on it carries no tension, and the brake pipe is open there.
+  /// 0: it never does.
+  double strength_n = 0.0;
   DraftGearParams draft_gear;
   DrawBarParams draw_bar;
+  TableGearParams table;
+  UnequalGearsParams unequal_gears;
+  SideBuffersParams side_buffers;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name);
     v.Choice("kind", kind,
-             {{"draft_gears", ConnectionKind::kDraftGears}, {"draw_bar", ConnectionKind::kDrawBar}});
+             {{"draft_gears", ConnectionKind::kDraftGears},
+              {"draw_bar", ConnectionKind::kDrawBar},
+              {"table", ConnectionKind::kTable},
+              {"unequal_gears", ConnectionKind::kUnequalGears},
+              {"side_buffers", ConnectionKind::kSideBuffers}});
+    v.Number("strength_n", strength_n, kNonNegative);
     if (kind == ConnectionKind::kDraftGears) v.Group("draft_gear", draft_gear);
     if (kind == ConnectionKind::kDrawBar) v.Group("draw_bar", draw_bar);
+    if (kind == ConnectionKind::kTable) v.Group("table", table);
+    if (kind == ConnectionKind::kUnequalGears) v.Group("unequal_gears", unequal_gears);
+    if (kind == ConnectionKind::kSideBuffers) v.Group("side_buffers", side_buffers);
   }
 
   /// The law that these parameters describe.
-  ConnectionLaw Law() const {
-    if (kind == ConnectionKind::kDrawBar) return DrawBar(draw_bar);
-    if (draft_gear.friction == DraftGearFriction::kStickSpring) return StickSpringGears(draft_gear);
-    return SmoothGears(draft_gear);
-  }
+  ConnectionLaw Law() const;
 };
 
 /// Where in the slack of its connections a train starts.

@@ -10,13 +10,15 @@ namespace train_dynamics {
 /// Connections of one law, side by side: one number each, in arrays of `count`, a multiple of kMostLanes.
 struct ConnectionArrays {
   int count;
+  double strength_n;                           ///< 0: never breaks
   const double* rate_mps;                      ///< of the extension
   double* extension_m;                         ///< at the last exchange
   double* memory;                              ///< of the law, [field][connection]
   double *force_n, *elastic_n;                 ///< tension positive
   double *tension_n, *tension_time_s;          ///< the largest so far, and when
   double *compression_n, *compression_time_s;  ///< the same, <= 0
-  double* dissipated_j;                        ///< so far
+  double *stored_j, *dissipated_j;  ///< at the last exchange, of a law that stores by memory; so far
+  double* parted_s;                 ///< when it broke; < 0: it has not
 };
 
 /// A law of connections over the lanes of one instruction set.

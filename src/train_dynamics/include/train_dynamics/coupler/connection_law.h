@@ -5,17 +5,25 @@
 /// A law is a struct of constant parameters with
 ///
 ///   kAccount                    the account of the energy ledger that its dissipation goes to
+///   kStoresByMemory             how the ledger books it, see below
 ///   Memory<T>                   what it remembers between two evaluations, with ForEachField; NoMemory if nothing
+///   AtRest(q)                   the memory of a connection that stands at q [m] from the start
 ///   Slack()                     free play in total [m]
 ///   TangentAt(force_n)          stiffness and damping of small motions about a force
 ///
 /// and with the free functions
 ///
 ///   GearForce<T> ConnectionForce(law, q, q_rate, memory)   the force; moves the memory on
-///   double StoredEnergy(law, q)                            elastic energy [J]
+///   T StoredEnergy(law, q, memory)                         energy that can be got back [J]
 ///
 /// q is the extension relative to the unstretched length [m], tension positive; the slack is +-slack/2. The laws are a
-/// closed set: ConnectionLaw in coupler/connection.h. A new one is a header and an entry there.
+/// closed set: OfConnectionLaws in coupler/connection.h. A new one is a header and an entry there.
+///
+/// Of the work F dq of an interval dissipates
+///
+///   F dq - d StoredEnergy           if kStoresByMemory: what can be got back depends on the path; not below 0 if
+///                                   kRateIndependent, so that what a finite step makes shows in the residual
+///   (F - F_elastic) dq              otherwise, F_elastic the slope of StoredEnergy
 namespace train_dynamics {
 
 /// Force of a connection [N] and the elastic part of it; both tension positive.
@@ -43,8 +51,6 @@ template <class T>
 struct NoMemory {
   template <class Function>
   void ForEachField(Function&& /*field*/) {}
-  /// At rest at an extension without force.
-  static NoMemory At(T /*q*/) { return {}; }
 };
 
 /// What a law with stick remembers.
@@ -58,7 +64,6 @@ struct StickState {
     field(q);
     field(force);
   }
-  static StickState At(T q) { return {q, T(0.0)}; }
 };
 
 }  // namespace train_dynamics

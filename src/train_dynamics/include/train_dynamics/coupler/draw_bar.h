@@ -14,8 +14,13 @@ struct DrawBar {
   static constexpr ConnectionAccount kAccount = ConnectionAccount::kDrawBars;
   template <class T>
   using Memory = NoMemory<T>;
+  static constexpr bool kStoresByMemory = false;
 
   explicit DrawBar(const DrawBarParams& bar) : params(bar) {}
+  template <class T>
+  NoMemory<T> AtRest(T /*q*/) const {
+    return {};
+  }
   double Slack() const { return 0.0; }
   ConnectionTangent TangentAt(double /*force_n*/) const {
     return {params.stiffness_n_per_m, params.damping_ns_per_m, false};
@@ -30,7 +35,8 @@ GearForce<T> ConnectionForce(const DrawBar& bar, T q, T q_rate, NoMemory<T>& /*m
   return {elastic + bar.params.damping_ns_per_m * q_rate, elastic};
 }
 
-inline double StoredEnergy(const DrawBar& bar, double q) {
+template <class T>
+T StoredEnergy(const DrawBar& bar, T q, const NoMemory<T>& /*memory*/) {
   return 0.5 * bar.params.stiffness_n_per_m * q * q;
 }
 

@@ -33,8 +33,13 @@ struct SmoothGears : DraftGear {
   static constexpr ConnectionAccount kAccount = ConnectionAccount::kDraftGears;
   template <class T>
   using Memory = NoMemory<T>;
+  static constexpr bool kStoresByMemory = false;
 
   using DraftGear::DraftGear;
+  template <class T>
+  NoMemory<T> AtRest(T /*q*/) const {
+    return {};
+  }
   double Slack() const { return params.slack_m; }
   /// k_s / 2 of the two springs, and F mu_s / (2 tan(phi) v_e), the slope of the friction where the gears stand.
   ConnectionTangent TangentAt(double force_n) const {
@@ -53,6 +58,9 @@ GearForce<T> ConnectionForce(const SmoothGears& gears, T q, T q_rate, NoMemory<T
   return SmoothGearForce(gears, q, q_rate);
 }
 
-inline double StoredEnergy(const SmoothGears& gears, double q) { return GearEnergy(gears.params, q); }
+template <class T>
+T StoredEnergy(const SmoothGears& gears, T q, const NoMemory<T>& /*memory*/) {
+  return GearEnergy(gears.params, q);
+}
 
 }  // namespace train_dynamics

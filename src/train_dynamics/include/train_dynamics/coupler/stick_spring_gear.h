@@ -1,6 +1,6 @@
 #pragma once
 
-#include "train_dynamics/coupler/draft_gear.h"
+#include "train_dynamics/coupler/damped_stick_gear.h"
 
 namespace train_dynamics {
 
@@ -33,13 +33,23 @@ struct StickSpringGears : DraftGear {
   static constexpr ConnectionAccount kAccount = ConnectionAccount::kDraftGears;
   template <class T>
   using Memory = StickState<T>;
+  static constexpr bool kStoresByMemory = true;
+  static constexpr bool kRateIndependent = false;
 
-  using DraftGear::DraftGear;
+  explicit StickSpringGears(const DraftGearParams& gear) : DraftGear(gear), device(gear) {
+    device.stick_stiffness_n_per_m = 2.0 * gear.stick_stiffness_n_per_m;  // of one of two in series
+  }
+  template <class T>
+  StickState<T> AtRest(T q) const {
+    return {q, T(0.0)};
+  }
   double Slack() const { return params.slack_m; }
   /// While it sticks.
   ConnectionTangent TangentAt(double /*force_n*/) const {
     return {params.stick_stiffness_n_per_m, 0.0, false};
   }
+
+  FrictionDevice device;  ///< a gear with mu_k
 };
 
 template <class T>
@@ -47,6 +57,15 @@ GearForce<T> ConnectionForce(const StickSpringGears& gears, T q, T q_rate, Stick
   return StickSpringGearForce(gears, q, q_rate, memory);
 }
 
-inline double StoredEnergy(const StickSpringGears& gears, double q) { return GearEnergy(gears.params, q); }
+/// What mu_k, the least friction, would give back. Below that branch the spring of a slow gear gives and takes what is
+/// not counted here: single steps may book less than zero, closed paths do not.
+template <class T>
+T StoredEnergy(const StickSpringGears& gears, T q, const StickState<T>& memory) {
+  const T travel = GearTravel(gears.params, q);
+  const T along = CopySign(T(1.0), q);
+  const T force = Clamp((memory.force + gears.params.stick_stiffness_n_per_m * (q - memory.q)) * along,
+                        gears.device.Unloading(travel), gears.device.Loading(travel));
+  return 2.0 * RecoverableEnergy(gears.device, travel, force);
+}
 
 }  // namespace train_dynamics

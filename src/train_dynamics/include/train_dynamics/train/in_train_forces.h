@@ -14,6 +14,12 @@ struct ForceExtremes {
   double compression_n = 0.0, compression_time_s = 0.0;  ///< <= 0
 };
 
+/// A connection that broke.
+struct Parting {
+  int connection;  ///< from 0
+  double time_s;
+};
+
 /// Work that the connections have taken up [J].
 struct ConnectionEnergy {
   double potential = 0.0;    ///< elastic energy stored now
@@ -51,6 +57,8 @@ class InTrainForces {
   int connections() const { return static_cast<int>(places_.size()); }
   /// [connection], from the front
   std::vector<ForceExtremes> Extremes() const;
+  /// The connections that broke so far, in the order of times, those of one time from the front.
+  std::vector<Parting> Partings() const;
   /// Extension of each connection at the last exchange [m].
   void Extensions(std::vector<double>& extension_m) const;
   /// Adds the memory of the laws, which is part of the train's state.
@@ -65,19 +73,24 @@ class InTrainForces {
  private:
   /// The connections of one type, side by side, filled up to whole packs of lanes.
   struct Set {
-    explicit Set(const ConnectionParams& params) : law(params.Law()) {}
+    explicit Set(const ConnectionParams& params) : law(params.Law()), strength_n(params.strength_n) {}
     /// Puts all connections to this extension, without force.
     void Begin(double extension_m);
     int Padded() const { return static_cast<int>(rate_mps.size()); }
     ConnectionArrays Arrays();
 
+    /// Books the energy of connections that broke at a time.
+    void Part(double time_s);
+
     ConnectionLaw law;
+    double strength_n;
     std::vector<int> place;  ///< [connection of the set] in the train
     std::vector<double> start_extension_m, next_extension_m;
     std::vector<double> rate_mps, extension_m, force_n, elastic_n;
     std::vector<double> memory;  ///< of the law, [field][connection]
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
-    std::vector<double> dissipated_j;
+    std::vector<double> stored_j, dissipated_j;
+    std::vector<double> parted_s;  ///< < 0: has not
   };
   /// Where a connection of the train is.
   struct Place {

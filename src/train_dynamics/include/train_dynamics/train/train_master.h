@@ -70,11 +70,15 @@ class TrainMaster {
 
  private:
   void ShowRecord();
+  /// Tells the brake of connections that have broken since it was told last.
+  void OpenPipes();
 
   const ScenarioParams& scenario_;
   Transport& transport_;
   BrakeSystem brake_;
   InTrainForces forces_;
+  bool can_part_ = false;
+  std::size_t opened_pipes_ = 0;
   std::uint64_t exchange_ = 0, first_exchange_ = 0;
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
