@@ -60,6 +60,31 @@ struct ConnectionParams {
   ConnectionLaw Law() const;
 };
 
+inline ConnectionLaw ConnectionParams::Law() const {
+  switch (kind) {
+    case ConnectionKind::kDrawBar:
+      return DrawBar(draw_bar);
+    case ConnectionKind::kTable:
+      return TableGear(table);
+    case ConnectionKind::kUnequalGears:
+      return UnequalGearsOf<ConnectionLaw>(unequal_gears);
+    case ConnectionKind::kSideBuffers:
+      return SideBuffers(side_buffers);
+    default:
+      break;
+  }
+  switch (draft_gear.friction) {
+    case DraftGearFriction::kStickSpring:
+      return StickSpringGears(draft_gear);
+    case DraftGearFriction::kDampedStick:
+      return DampedStickGears(draft_gear);
+    case DraftGearFriction::kLuGre:
+      return LuGreGears(draft_gear);
+    default:
+      return SmoothGears(draft_gear);
+  }
+}
+
 /// Where in the slack of its connections a train starts.
 enum class SlackState { kStretched, kMiddle, kBunched };
 

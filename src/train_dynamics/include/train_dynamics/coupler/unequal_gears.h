@@ -149,4 +149,27 @@ T StoredEnergy(const UnequalGears<DeviceA, DeviceB>& gears, T q, const UnequalSt
          RecoverableEnergy(gears.b, travel_b, now.force_b);
 }
 
+/// The law of two gears; which of them is in front does not matter to the force.
+/// @tparam Law  a variant of the three
+template <class Law>
+Law UnequalGearsOf(const UnequalGearsParams& p) {
+  const auto friction = [](const OneGearParams& gear) { return FrictionDevice(gear.draft_gear); };
+  const auto table = [](const OneGearParams& gear) {
+    return TableDevice(gear.table.tables, gear.table.locked_stiffness_n_per_m,
+                       gear.table.locked_damping_ns_per_m, gear.table.solid_stiffness_n_per_m);
+  };
+  const bool front_rubs = p.front_gear.kind == OneGearParams::Kind::kFriction;
+  const bool rear_rubs = p.rear_gear.kind == OneGearParams::Kind::kFriction;
+  if (front_rubs && rear_rubs) {
+    return UnequalGears<FrictionDevice, FrictionDevice>{p.slack_m, friction(p.front_gear),
+                                                        friction(p.rear_gear)};
+  }
+  if (front_rubs || rear_rubs) {
+    return UnequalGears<FrictionDevice, TableDevice>{p.slack_m,
+                                                     friction(front_rubs ? p.front_gear : p.rear_gear),
+                                                     table(front_rubs ? p.rear_gear : p.front_gear)};
+  }
+  return UnequalGears<TableDevice, TableDevice>{p.slack_m, table(p.front_gear), table(p.rear_gear)};
+}
+
 }  // namespace train_dynamics
