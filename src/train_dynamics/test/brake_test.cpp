@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/brake/air_brake.h"
 #include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/brake/shoe_friction.h"
 #include "train_dynamics/numeric/monotone_cubic.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -400,7 +400,7 @@ TEST(AirBrake, WrongInputIsRefused) {
   EXPECT_THROW(Brake({Apply(5.0, 60.0), Release(4.0)}), std::invalid_argument);  // back in time
   AirBrakeParams slow = PaperBrake();
   slow.emergency.rise_rate_fall_per_s = slow.emergency.rise_rate_per_s;  // nothing would be left
-  EXPECT_THROW(Validate(slow), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(slow), std::invalid_argument);
   AirBrakeParams no_charger = PaperBrake();
   for (BrakeSourceParams& source : no_charger.sources) source.releases = false;
   EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Release(9.0)}, PaperTrain()), std::invalid_argument);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "simulate.h"
-#include "train_dynamics/config/writer.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/train/run_summary.h"
 #include "train_dynamics/train/snapshot.h"
 

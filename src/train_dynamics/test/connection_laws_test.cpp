@@ -11,7 +11,7 @@
 
 #include "gear_cycles.h"
 #include "paper_vehicle.h"
-#include "train_dynamics/validate.h"
+#include "strict_config/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -155,7 +155,7 @@ TEST(TableGear, EndOfStickIsWhereTheLineMeetsTheBranch) {
 
 std::string ErrorOf(const ConnectionParams& params) {
   try {
-    Validate(params);
+    strict_config::Validate(params);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

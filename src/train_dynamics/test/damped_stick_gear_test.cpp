@@ -10,7 +10,7 @@
 
 #include "gear_cycles.h"
 #include "paper_vehicle.h"
-#include "train_dynamics/validate.h"
+#include "strict_config/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -165,12 +165,12 @@ TEST(DampedStickGears, DissipateAtEveryStepOfASlowPath) {
 TEST(DampedStickGears, RefuseAFrictionThatFallsAndASoftStickSpring) {
   DraftGearParams p = Gear();
   p.kinetic_friction_coefficient = 0.2;
-  EXPECT_THROW(Validate(p), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(p), std::invalid_argument);
   p = Gear();
   p.gear_stick_stiffness_n_per_m = 9e7;  // 3.2575 (20 kN / 1 mm + 8 MN/m) = 91.2 MN/m
-  EXPECT_THROW(Validate(p), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(p), std::invalid_argument);
   p.gear_stick_stiffness_n_per_m = 9.2e7;
-  EXPECT_NO_THROW(Validate(p));
+  EXPECT_NO_THROW(strict_config::Validate(p));
 }
 
 }  // namespace

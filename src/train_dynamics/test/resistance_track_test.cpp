@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/numeric/trigonometry.h"
 #include "train_dynamics/resistance/propulsion.h"
 #include "train_dynamics/track/track.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -57,7 +57,7 @@ TEST(Grade, HoldsFromItsEntryToTheNext) {
 TEST(Grade, EntriesMustAscend) {
   TrackParams track;
   track.grades = {{0.0, 1.0}, {0.0, 2.0}};
-  EXPECT_THROW(Validate(track), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(track), std::invalid_argument);
 }
 
 TEST(Dip, IsEq7) {

@@ -9,12 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "train_dynamics/config/error_list.h"
+#include "strict_config/error_list.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics::config {
 namespace {
+
+using strict_config::Error;
+using strict_config::ErrorList;
+using strict_config::Validate;
 
 namespace fs = std::filesystem;
 using Settings = std::vector<std::string>;

@@ -12,15 +12,26 @@
 #include <stdexcept>
 #include <utility>
 
+#include "strict_config/csv_table.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/brake/pressure_table.h"
-#include "train_dynamics/config/csv_table.h"
-#include "train_dynamics/config/reader.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
 
 namespace train_dynamics::config {
 namespace {
+
+using strict_config::CsvTable;
+using strict_config::Error;
+using strict_config::ErrorList;
+using strict_config::Load;
+using strict_config::LoadOptions;
+using strict_config::LoadText;
+using strict_config::ReadCsvTable;
+using strict_config::Reader;
+using strict_config::SearchRootsFromEnvironment;
+using strict_config::Write;
 
 LoadOptions OptionsFor(const std::vector<std::string>& overrides, const std::string& kind) {
   LoadOptions options;

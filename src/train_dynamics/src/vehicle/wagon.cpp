@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "strict_config/validate.h"
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/contact/polach.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -48,7 +48,7 @@ VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
 }  // namespace
 
 Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.friction_wedge) {
-  Validate(params);
+  strict_config::Validate(params);
   const VehicleParams& p = params;
   const auto set_body = [this](int i, double mass, double inertia) {
     mass_kg[i] = mass;

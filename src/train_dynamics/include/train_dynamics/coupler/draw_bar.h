@@ -1,7 +1,7 @@
 #pragma once
 
 #include "train_dynamics/coupler/connection_law.h"
-#include "train_dynamics/suspension/linear_spring_damper.h"
+#include "train_dynamics/spring/linear_spring_damper.h"
 
 namespace train_dynamics {
 
