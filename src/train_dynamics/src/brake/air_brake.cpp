@@ -133,10 +133,6 @@ std::vector<WaveSource> SourcesOf(const AirBrakeParams& params, bool is_release,
 
 }  // namespace
 
-bool ServiceApplicationParams::Ascending(const std::vector<double>& values) {
-  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-}
-
 std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands,
                                                     int vehicles) const {
   std::vector<BrokenRule> broken;

@@ -177,10 +177,10 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
 void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   if (!Uses(VehicleModel::kTwoD) || train.consist.empty()) return;
   /// Where vehicles of the 2D model stand at the start, without a gap.
-  struct Stretch {
+  struct StandingStretch {
     double rear_m, front_m;
   };
-  std::vector<Stretch> stretches;
+  std::vector<StandingStretch> stretches;
   double rear_m = start_position_m + 0.5 * train.consist.front().vehicle.length_m;
   bool goes_on = false;
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
@@ -196,7 +196,7 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 0; i < track.dips.size(); ++i) {
     const DipParams& dip = track.dips[i];
     if (dip.depth_m == 0.0) continue;
-    for (const Stretch& stretch : stretches) {
+    for (const StandingStretch& stretch : stretches) {
       if (!(dip.from_m < stretch.front_m && dip.from_m + dip.length_m > stretch.rear_m)) continue;
       broken.push_back({"track.dips" + Index(i),
                         "must not lie under " + who + " on [" + Short(stretch.rear_m) + ", " +
@@ -234,7 +234,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     leaves_out("track.dips", scenario.track.dips.size());
     leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
-  else if (!train.consist.empty()) {
+  if (scenario.Uses(VehicleModel::kTwoD) && !train.consist.empty()) {
     const Stretch reach = ReachOf(scenario);
     WarnOfReach(
         "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
