@@ -122,7 +122,7 @@ class DistributedTrain(unittest.TestCase):
     def test_same_as_in_one_process_for_every_number_of_nodes(self):
         expected = train_sim()
         for arguments in (["nodes:=1"], ["nodes:=3"], ["nodes:=6"], ["nodes:=2", "threads:=2"],
-                          ["nodes:=3", "shared_memory:=false"], ["nodes:=3", "client:=blocking"]):
+                          ["nodes:=3", "shared_memory:=false"]):
             with self.subTest(arguments):
                 self.assert_complete(self.launch(*arguments), expected)
 
@@ -337,7 +337,7 @@ class DistributedTrain(unittest.TestCase):
 
     def test_bad_input_ends_with_2(self):
         for arguments, complaint in ((["set:=dt_s=abc"], "dt_s must be"), (["vehicles:=7"], "vehicles:=6"),
-                                     (["client:=fast"], "client must be"), (["checkpoint_interval:=nan"], "checkpoint_interval_s must be"),
+                                     (["checkpoint_interval:=nan"], "checkpoint_interval_s must be"),
                                      (["on_lost_node:=foo"], "on_lost_node must be")):
             with self.subTest(arguments):
                 launch = self.launch(*arguments, "nodes:=2")

@@ -360,14 +360,6 @@ class Full(Matrix):
                    expected_s=1)
         self.assertGreater(self.assert_stopped(launch, 4, "closed the connection"), 50)  # 0.5 s
 
-    @cell("kill -9 of a wagon node", "mid-run, client:=blocking")
-    def test_kill_with_blocking_client(self):
-        launch = self.launch(PACED, "client:=blocking")
-        launch.saw(A_QUARTER, SOON)
-        killed = self.signal(signal.SIGKILL)
-        self.named(launch, RANK + r", exchange \d+: the call failed", killed, "brought back, same bits")
-        self.assert_same(launch)
-
     @cell("kill -9 of a wagon node", "mid-run, shared_memory:=false")
     def test_kill_by_tcp(self):
         launch = self.launch(PACED, "shared_memory:=false")
@@ -419,14 +411,6 @@ class Full(Matrix):
     @cell("SIGSTOP, later SIGCONT", "mid-run, awake again after the deadline")
     def test_stop_beyond_deadline(self):
         launch = self.stop_beyond_deadline()
-        time.sleep(1)
-        self.signal(signal.SIGCONT)
-        launch.saw(RANK + " is back after", SOON)
-        self.assert_same(launch)
-
-    @cell("SIGSTOP, later SIGCONT", "mid-run, the same with client:=blocking")
-    def test_stop_beyond_deadline_of_blocking_client(self):
-        launch = self.stop_beyond_deadline("client:=blocking")
         time.sleep(1)
         self.signal(signal.SIGCONT)
         launch.saw(RANK + " is back after", SOON)

@@ -33,18 +33,16 @@ using train_dynamics::TrainMaster;
 using train_dynamics::config::LoadedScenario;
 
 constexpr int kVehicles = 6;
-constexpr int kBlockingThreads = 2;
 
 /// How calls reach the ranks.
-enum class Path { kMemory, kTcp, kBlocking };
+enum class Path { kMemory, kTcp };
 std::string PathName(const testing::TestParamInfo<Path>& test) {
-  return test.param == Path::kMemory ? "Memory" : test.param == Path::kTcp ? "Tcp" : "Blocking";
+  return test.param == Path::kMemory ? "Memory" : "Tcp";
 }
 void Choose(Path path, RosTransportOptions& options) {
-  options.blocking_threads = path == Path::kBlocking ? kBlockingThreads : 0;
   options.shared_memory = path == Path::kMemory;
 }
-constexpr Path kPaths[] = {Path::kMemory, Path::kTcp, Path::kBlocking};
+constexpr Path kPaths[] = {Path::kMemory, Path::kTcp};
 
 // Wall times of events that need none: processes start, die and answer; the machine may be busy.
 constexpr double kSoon = 10.0;
@@ -225,9 +223,7 @@ class LostAndFound : public testing::TestWithParam<Path> {
       ranks_[rank].name = "/own/wagon_" + std::to_string(NextRun());
       StartProcess(rank);
     }
-    caller_ = GetParam() == Path::kBlocking
-                  ? ltd_master::MakeBlockingCaller(ranks_, kVehicles)
-                  : ltd_master::MakeAsynchronousCaller(ranks_, GetParam() == Path::kMemory ? run_ : 0);
+    caller_ = ltd_master::MakeAsynchronousCaller(ranks_, GetParam() == Path::kMemory ? run_ : 0);
     messages_ = std::make_unique<ltd_master::RankMessages>(ranks_, run_, scenario_.params);
     for (int rank = 0; rank < kVehicles; ++rank) Connect(rank);
     ltd_master::LateWatch watch = Watch(kSoon);

@@ -7,10 +7,8 @@ EXCHANGES = {2: 10000, 8: 6000, 22: 3000, 61: 1500, 121: 600, workspace.VEHICLES
 WAYS = {  # how the master calls wagon nodes: arguments of train.launch
     "shared memory": [],
     "TCP": ["shared_memory:=false"],
-    "blocking client": ["client:=blocking"],
 }
 PAIRED = "shared memory"                   # beside MPI at any number of ranks; the first of WAYS
-BLOCKING_RANKS = (2, workspace.VEHICLES)  # where that one is measured
 MANY_RANKS = 100
 
 
@@ -20,10 +18,9 @@ def run():
     digests = set()
     for ranks, exchanges in EXCHANGES.items():
         settings = [f"duration_s={exchanges / 1000:g}"]
-        ways = [way for way in WAYS if way != "blocking client" or ranks in BLOCKING_RANKS]
-        launches = [lambda way=way: workspace.Launch(ranks, *WAYS[way], settings=settings) for way in ways]
+        launches = [lambda way=way: workspace.Launch(ranks, *WAYS[way], settings=settings) for way in WAYS]
         *of_ways, mpi = _in_turn(ranks, launches, lambda: workspace.mpi_train(ranks, settings))
-        for way, of_way in zip(ways, of_ways):
+        for way, of_way in zip(WAYS, of_ways):
             cost[way, ranks] = [launch.per_exchange_s() for launch in of_way]
             digests |= {(ranks, launch.summary["state_digest"]) for launch in of_way}
         if None not in mpi:

@@ -87,8 +87,6 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
   options.exchange_timeout_s = NonNegative(parameters, "exchange_timeout_s", 30.0);
   options.recover = OneOf(parameters, "on_lost_node", "recover", "stop");
   options.recovery_timeout_s = NonNegative(parameters, "recovery_timeout_s", 60.0);
-  constexpr int kBlockingThreads = 16;
-  options.blocking_threads = OneOf(parameters, "client", "fan_out", "blocking") ? 0 : kBlockingThreads;
   options.shared_memory = parameters.param("shared_memory", true);
   return options;
 }
@@ -137,7 +135,6 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   RosTransportOptions transport;
   transport.start_timeout_s = options_.startup_timeout_s;
   transport.exchange_deadline_s = options_.exchange_timeout_s;
-  transport.blocking_threads = options_.blocking_threads;
   transport.shared_memory = options_.shared_memory;
   transport.recover = options_.recover;
   transport.recovery_timeout_s = options_.recovery_timeout_s;

@@ -40,7 +40,6 @@ struct MasterOptions {
   double exchange_timeout_s = 30.0;
   bool recover = true;  ///< bring lost wagon nodes back
   double recovery_timeout_s = 60.0;
-  int blocking_threads = 0;  ///< 0 = asynchronous fan-out
   bool shared_memory = true;
 
   /// @throws std::invalid_argument naming the parameter

@@ -44,9 +44,7 @@ RosTransport::RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_
   for (train_dynamics::Rank& rank : ranks_) rank.name = ros::names::resolve(rank.name);
   RaiseDescriptorLimit(ranks_.size());
   messages_ = std::make_unique<RankMessages>(ranks_, run_id, scenario);
-  caller_ = options_.blocking_threads > 0
-                ? MakeBlockingCaller(ranks_, options_.blocking_threads)
-                : MakeAsynchronousCaller(ranks_, options_.shared_memory ? run_id : 0);
+  caller_ = MakeAsynchronousCaller(ranks_, options_.shared_memory ? run_id : 0);
 }
 
 RosTransport::~RosTransport() = default;

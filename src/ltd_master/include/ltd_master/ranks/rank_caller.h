@@ -54,9 +54,4 @@ std::string WhyNotFound();
 std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<train_dynamics::Rank>& ranks,
                                                    std::uint64_t run_id);
 
-/// A pool of threads, each of which calls one rank after the other through roscpp's ServiceClient.
-///
-/// For comparison, and in case a network needs what roscpp does beyond plain TCPROS.
-std::unique_ptr<RankCaller> MakeBlockingCaller(const std::vector<train_dynamics::Rank>& ranks, int threads);
-
 }  // namespace ltd_master

@@ -23,7 +23,6 @@ class RankMessages;
 struct RosTransportOptions {
   double start_timeout_s = 60.0;      ///< for all ranks to come up, and to be configured; 0: for ever
   double exchange_deadline_s = 30.0;  ///< for all replies of an exchange; 0: for ever
-  int blocking_threads = 0;           ///< 0: asynchronous; else see MakeBlockingCaller
   bool recover = true;                ///< bring lost ranks back; false: the run ends with them
   double recovery_timeout_s = 60.0;   ///< for each lost rank, one after the other, to come back; 0: for ever
   std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
