@@ -42,7 +42,7 @@ std::uint32_t ReplyRoom(int vehicles) {
   record.dissipated_j.resize(count * train_dynamics::kDissipations);
   record.details.resize(count);
   train_dynamics::BlockSnapshot snapshot;
-  snapshot.state.resize(count * sizeof(train_dynamics::WagonState<double>) / sizeof(double));
+  snapshot.state.resize(count * sizeof(train_dynamics::SixAxleVehicle::State<double>) / sizeof(double));
   reply.snapshot = train_dynamics::Encode(snapshot);
   return ros::serialization::serializationLength(reply) + kTextRoom;
 }

@@ -110,8 +110,14 @@ std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
   JudgeBrake(broken);
   const int vehicles = train.VehicleCount();
   for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
-    if (VehicleIndex(detail_vehicles[i], vehicles) >= 0) continue;
-    broken.push_back({"detail_vehicles" + Index(i), VehicleRule(vehicles), {"train"}});
+    const int vehicle = VehicleIndex(detail_vehicles[i], vehicles);
+    if (vehicle < 0) {
+      broken.push_back({"detail_vehicles" + Index(i), VehicleRule(vehicles), {"train"}});
+    } else if (model == VehicleModel::kTwoD && train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
+      broken.push_back({"detail_vehicles" + Index(i),
+                        "must be a vehicle with wheelsets_per_bogie 2: full detail is not recorded of others",
+                        {"train"}});
+    }
   }
   JudgeDips(broken);
   return broken;

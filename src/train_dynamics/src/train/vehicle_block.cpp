@@ -1,7 +1,10 @@
 #include "train_dynamics/train/vehicle_block.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
+#include <variant>
 
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
@@ -17,18 +20,24 @@ LtdState<double> StartState(const LtdVehicle& /*vehicle*/, double origin_m, doub
   state.v_mps = speed_mps;
   return state;
 }
-WagonState<double> StartState(const Wagon& wagon, double origin_m, double speed_mps) {
+template <int kPerBogie>
+WagonState<double, kPerBogie> StartState(const BogieVehicle<kPerBogie>& wagon, double origin_m,
+                                         double speed_mps) {
   return StaticEquilibrium(wagon, origin_m, speed_mps);
 }
 
 VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const TrackParams& /*track*/, const LtdState<double>& s) {
   return {KineticEnergy(vehicle, s), 0.0, s.work};
 }
-VehicleEnergy EnergyOf(const Wagon& wagon, const TrackParams& track, const WagonState<double>& s) {
+template <int kPerBogie>
+VehicleEnergy EnergyOf(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track,
+                       const WagonState<double, kPerBogie>& s) {
   return {KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work};
 }
 
-void FillDetail(const VehicleBatch<LtdVehicle>& /*batch*/, int /*i*/, WagonDetail& /*detail*/) {}
+/// WagonDetail holds vehicles with two wheelsets per bogie; the scenario's rules refuse others.
+template <class Vehicle>
+void FillDetail(const VehicleBatch<Vehicle>& /*batch*/, int /*i*/, WagonDetail& /*detail*/) {}
 void FillDetail(const VehicleBatch<Wagon>& batch, int i, WagonDetail& detail) {
   const WagonState<double> s = batch.StateOf(i);
   detail.position = s.position;
@@ -44,8 +53,9 @@ std::string Describe(const char* what, double value, const char* unit) {
 std::string FaultOf(const LtdState<double>& s) { return Describe("speed", s.v_mps, "m/s"); }
 
 /// Names the first body that is not where a body can be.
-std::string FaultOf(const WagonState<double>& s) {
-  for (int b = 0; b < kBodies; ++b) {
+template <int kPerBogie>
+std::string FaultOf(const WagonState<double, kPerBogie>& s) {
+  for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
     const auto describe = [b](const char* what, double value, const char* unit) {
       return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
     };
@@ -65,24 +75,48 @@ std::string FaultOf(const WagonState<double>& s) {
 
 // ---- what they have in common ---------------------------------------------------------------------------------
 
-/// Vehicles of one model, in one batch for each run of equal vehicles.
-template <class Vehicle>
+using AnyBatch = std::variant<VehicleBatch<LtdVehicle>, VehicleBatch<Wagon>, VehicleBatch<SixAxleVehicle>>;
+
+/// Calls use(vehicle) with the model of a vehicle that a scenario asks for.
+template <class Use>
+auto WithModel(const ScenarioParams& scenario, const VehicleParams& params, const Use& use) {
+  if (scenario.model == VehicleModel::kTwoD) return WithBogieVehicle(params, use);
+  return use(LtdVehicle(params, scenario.model == VehicleModel::kLtd, scenario.integrator));
+}
+
+template <class Batch>
+constexpr int NumbersOf() {
+  return sizeof(typename Batch::State) / sizeof(double);
+}
+
+/// Numbers in the state of a vehicle of this model.
+int StateNumbers(const ScenarioParams& scenario, const VehicleParams& params) {
+  if (scenario.model != VehicleModel::kTwoD) return NumbersOf<VehicleBatch<LtdVehicle>>();
+  return params.wheelsets_per_bogie == 3 ? NumbersOf<VehicleBatch<SixAxleVehicle>>()
+                                         : NumbersOf<VehicleBatch<Wagon>>();
+}
+
+/// Vehicles in one batch for each run of equal ones.
 class Block : public VehicleBlock {
  public:
-  /// @param make  a vehicle from its VehicleParams
-  template <class Make>
-  Block(const ScenarioParams& scenario, const Consist& consist, int first, int count, const Make& make)
+  Block(const ScenarioParams& scenario, const Consist& consist, int first, int count)
       : track_(scenario.track), first_(first) {
+    for (const VehicleParams& params : consist.vehicle_types) {
+      numbers_ = std::max(numbers_, StateNumbers(scenario, params));
+    }
     for (int i = first; i < first + count;) {
       const int type = consist.vehicle_type[i], begin = i;
-      const Vehicle vehicle = make(consist.vehicle_types[type]);
-      auto state = StartState(vehicle, 0.0, scenario.InitialSpeed());
-      std::vector<typename VehicleBatch<Vehicle>::State> states;
-      for (; i < first + count && consist.vehicle_type[i] == type; ++i) {
-        state.origin_m = scenario.start_position_m + consist.centre_m[i];
-        states.push_back(state);
-      }
-      runs_.push_back({begin, VehicleBatch<Vehicle>(vehicle, BestLaneKernels(), states)});
+      while (i < first + count && consist.vehicle_type[i] == type) ++i;
+      const auto batch_of = [&](const auto& vehicle) -> AnyBatch {
+        auto state = StartState(vehicle, 0.0, scenario.InitialSpeed());
+        std::vector<decltype(state)> states;
+        for (int k = begin; k < i; ++k) {
+          state.origin_m = scenario.start_position_m + consist.centre_m[k];
+          states.push_back(state);
+        }
+        return VehicleBatch<std::decay_t<decltype(vehicle)>>(vehicle, BestLaneKernels(), states);
+      };
+      runs_.push_back({begin, WithModel(scenario, consist.vehicle_types[type], batch_of)});
     }
   }
 
@@ -93,7 +127,11 @@ class Block : public VehicleBlock {
       const VehicleArrays arrays = {&request.coupler_force_n[at], &request.coupler_force_n[at + 1],
                                     &request.cylinder_pressure_pa[at], &reply.head_displacement_m[at],
                                     &reply.head_velocity_mps[at]};
-      sound &= run.batch.Advance(track_, request.dt_s, request.steps, arrays, request.record);
+      sound &= std::visit(
+          [&](auto& batch) {
+            return batch.Advance(track_, request.dt_s, request.steps, arrays, request.record);
+          },
+          run.batch);
     }
     if (request.record) Report(offset, request.ledger, reply);
     return sound;
@@ -102,66 +140,76 @@ class Block : public VehicleBlock {
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override {
     for (const Run& run : runs_) {
       const std::size_t at = offset + run.begin - first_;
-      run.batch.Record({&reply.head_displacement_m[at], &reply.head_velocity_mps[at], &reply.position_m[at],
-                        &reply.speed_mps[at], &reply.shoe_force_n[at], &reply.wheel_force_n[at],
-                        &reply.creepage[at]});
-      run.batch.Digests(&reply.state_digest[at]);
-      if (!with_energy) continue;
-      for (int i = 0; i < run.batch.size(); ++i) {
-        reply.energy[at + i] = EnergyOf(run.batch.vehicle(), track_, run.batch.StateOf(i));
-      }
-    }
-    for (WagonDetail& detail : reply.details) {
-      for (const Run& run : runs_) {
-        const int i = detail.vehicle - run.begin;
-        if (i >= 0 && i < run.batch.size()) FillDetail(run.batch, i, detail);
-      }
+      std::visit(
+          [&](const auto& batch) {
+            batch.Record({&reply.head_displacement_m[at], &reply.head_velocity_mps[at], &reply.position_m[at],
+                          &reply.speed_mps[at], &reply.shoe_force_n[at], &reply.wheel_force_n[at],
+                          &reply.creepage[at]});
+            batch.Digests(&reply.state_digest[at]);
+            for (int i = 0; with_energy && i < batch.size(); ++i) {
+              reply.energy[at + i] = EnergyOf(batch.vehicle(), track_, batch.StateOf(i));
+            }
+            for (WagonDetail& detail : reply.details) {
+              const int i = detail.vehicle - run.begin;
+              if (i >= 0 && i < batch.size()) FillDetail(batch, i, detail);
+            }
+          },
+          run.batch);
     }
   }
 
-  int NumbersPerVehicle() const override { return kNumbers; }
+  int NumbersPerVehicle() const override { return numbers_; }
 
   void Save(double* state) const override {
-    for (const Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
-        const State vehicle = run.batch.StateOf(i);
-        std::memcpy(state, &vehicle, sizeof vehicle);
-      }
-    }
+    ForEachVehicle(*this, [&](const auto& batch, int i, int /*vehicle*/) {
+      const auto vehicle = batch.StateOf(i);
+      std::fill_n(state, numbers_, 0.0);
+      std::memcpy(state, &vehicle, sizeof vehicle);
+      state += numbers_;
+    });
   }
 
   void Restore(const double* state) override {
-    for (Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i, state += kNumbers) {
-        State vehicle;
-        std::memcpy(static_cast<void*>(&vehicle), state, sizeof vehicle);
-        run.batch.SetState(i, vehicle);
-      }
-    }
+    ForEachVehicle(*this, [&](auto& batch, int i, int /*vehicle*/) {
+      auto vehicle = batch.StateOf(i);
+      std::memcpy(static_cast<void*>(&vehicle), state, sizeof vehicle);
+      batch.SetState(i, vehicle);
+      state += numbers_;
+    });
   }
 
   VehicleFault FindFault() const override {
-    for (const Run& run : runs_) {
-      for (int i = 0; i < run.batch.size(); ++i) {
-        const auto state = run.batch.StateOf(i);
-        if (!IsSound(state)) return {run.begin + i, FaultOf(state)};
-      }
-    }
-    return {};
+    VehicleFault fault;
+    ForEachVehicle(*this, [&](const auto& batch, int i, int vehicle) {
+      if (fault.vehicle >= 0) return;
+      const auto state = batch.StateOf(i);
+      if (!IsSound(state)) fault = {vehicle, FaultOf(state)};
+    });
+    return fault;
   }
 
  private:
-  using State = typename VehicleBatch<Vehicle>::State;
-  static constexpr int kNumbers = sizeof(State) / sizeof(double);
-
   /// Vehicles of one type, one behind the other.
   struct Run {
     int begin;  ///< index of the first in the train
-    VehicleBatch<Vehicle> batch;
+    AnyBatch batch;
   };
+
+  /// Calls use(batch, index in it, index in the train) for all vehicles in order.
+  template <class Self, class Use>
+  static void ForEachVehicle(Self& self, const Use& use) {
+    for (auto& run : self.runs_) {
+      std::visit(
+          [&](auto& batch) {
+            for (int i = 0; i < batch.size(); ++i) use(batch, i, run.begin + i);
+          },
+          run.batch);
+    }
+  }
 
   TrackParams track_;
   int first_;
+  int numbers_ = 0;  ///< of the vehicle of the train that has most
   std::vector<Run> runs_;
 };
 
@@ -176,14 +224,7 @@ void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& 
 
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count) {
-  if (scenario.model == VehicleModel::kTwoD) {
-    return std::make_unique<Block<Wagon>>(scenario, consist, first, count,
-                                          [](const VehicleParams& params) { return Wagon(params); });
-  }
-  const bool with_inertia = scenario.model == VehicleModel::kLtd;
-  return std::make_unique<Block<LtdVehicle>>(
-      scenario, consist, first, count,
-      [&](const VehicleParams& params) { return LtdVehicle(params, with_inertia, scenario.integrator); });
+  return std::make_unique<Block>(scenario, consist, first, count);
 }
 
 }  // namespace train_dynamics

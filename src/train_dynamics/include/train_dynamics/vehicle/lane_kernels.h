@@ -45,8 +45,10 @@ struct LaneKernels {
   const char* instruction_set;
   int lanes;
   StepPacks<Wagon> step_wagons;
+  StepPacks<SixAxleVehicle> step_six_axle;
   StepPacks<LtdVehicle> step_ltd;
   RecordPack<Wagon> record_wagons;
+  RecordPack<SixAxleVehicle> record_six_axle;
   RecordPack<LtdVehicle> record_ltd;
   /// Forces of `count` connections of one type, a multiple of `lanes`.
   void (*connection_forces)(const Connection& type, double prediction_s, double time_s, int count,

@@ -18,36 +18,37 @@ namespace train_dynamics {
 /// Left out: the moment by which brake shoes turn the bogie frames, and the wedges' own inertia.
 ///
 /// @param output  receives the step's contact and friction forces; may be null
-template <class T>
-void StepWagon(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T>& s, WagonOutput<T>* output);
+template <class T, int kPerBogie>
+void StepWagon(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track, const VehicleLoads<T>& loads,
+               double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// q += h v
-template <class T>
-void Drift(const BodyVector<T>& v, double h, BodyVector<T>& q) {
-  for (int i = 0; i < kBodies; ++i) {
+template <class T, int kPerBogie>
+void Drift(const BodyVector<T, kPerBogie>& v, double h, BodyVector<T, kPerBogie>& q) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     q.x[i] = q.x[i] + h * v.x[i];
     q.z[i] = q.z[i] + h * v.z[i];
     q.pitch[i] = q.pitch[i] + h * v.pitch[i];
   }
 }
 
-/// Contact forces between the four wheelsets and the rail at the step's middle.
-template <class T>
+/// Contact forces between the wheelsets and the rail at the step's middle.
+template <class T, int kPerBogie = 2>
 struct RailForces {
-  std::array<T, kWheelsets> normal{};    ///< N of both wheels [N]
-  std::array<T, kWheelsets> damping{};   ///< the part of N that is not elastic [N]
-  std::array<T, kWheelsets> slope{};     ///< of the rail [-]
-  std::array<T, kWheelsets> friction{};  ///< mu0 [-]
+  std::array<T, kWheelsetsOf<kPerBogie>> normal{};    ///< N of both wheels [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> damping{};   ///< the part of N that is not elastic [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> slope{};     ///< of the rail [-]
+  std::array<T, kWheelsetsOf<kPerBogie>> friction{};  ///< mu0 [-]
 };
 
-template <class T>
-RailForces<T> ContactForces(const Wagon& w, const TrackParams& track, const WagonState<T>& s) {
+template <class T, int kPerBogie>
+RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const TrackParams& track,
+                                       const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
-  RailForces<T> rail;
-  for (int i = 0; i < kWheelsets; ++i) {
+  RailForces<T, kPerBogie> rail;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
     const RailPoint<T> point = RailUnder(track, at, w.params.wheel_rail.adhesion.friction_coefficient);
@@ -72,23 +73,25 @@ RailForces<T> ContactForces(const Wagon& w, const TrackParams& track, const Wago
 ///
 /// Projected Gauss-Seidel; the coupling |a-b| / (a+b) is about 0.07, so that each sweep gains a factor of
 /// 200.
-template <class T>
-std::array<T, 4> WedgeFrictionForces(const Wagon& w, const std::array<T, 4>& deflection,
-                                     const std::array<T, 4>& rate, const std::array<T, 4>& free_rate,
-                                     double dt) {
+template <class T, int kPerBogie>
+std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
+                                             const std::array<T, kQuarters>& deflection,
+                                             const std::array<T, kQuarters>& rate,
+                                             const std::array<T, kQuarters>& free_rate, double dt) {
   constexpr int kSweeps = 4;
-  std::array<T, 4> f{};
+  std::array<T, kQuarters> f{};
+  if (!w.wedge) return f;
   for (int bogie = 0; bogie < kBogies; ++bogie) {
     const int bolster = kFrontBolster + bogie, frame = kFrontFrame + bogie;
     const double a = w.inv_mass_per_kg[bolster] + w.inv_mass_per_kg[frame];
-    const double offset = w.params.friction_wedge.offset_m;
+    const double offset = w.wedge->params.offset_m;
     const double b = offset * offset * (w.inv_inertia_per_kgm2[bolster] + w.inv_inertia_per_kgm2[frame]);
     const double own = dt * (a + b), other = dt * (a - b), inv_own = 1.0 / own;
     WedgeFrictionBounds<T> bounds[2];
     for (int end = 0; end < 2; ++end) {
-      const T travel = w.wedge.kappa * deflection[2 * bogie + end];
-      bounds[end] = WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.params.friction_wedge, travel),
-                                  rate[2 * bogie + end]);
+      const T travel = w.wedge->kappa * deflection[2 * bogie + end];
+      bounds[end] =
+          WedgeFriction(*w.wedge, 2.0 * WedgeSpringForce(w.wedge->params, travel), rate[2 * bogie + end]);
     }
     const T c0 = free_rate[2 * bogie], c1 = free_rate[2 * bogie + 1];
     T f0(0.0), f1(0.0);
@@ -103,8 +106,9 @@ std::array<T, 4> WedgeFrictionForces(const Wagon& w, const std::array<T, 4>& def
 }
 
 /// Velocities after the forces have acted for dt on the bodies [begin, end).
-template <class T>
-void Kick(const Wagon& w, const BodyVector<T>& force, double dt, int begin, int end, BodyVector<T>& v) {
+template <class T, int kPerBogie>
+void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& force, double dt, int begin,
+          int end, BodyVector<T, kPerBogie>& v) {
   for (int i = begin; i < end; ++i) {
     v.x[i] = v.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
     v.z[i] = v.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
@@ -123,27 +127,29 @@ struct OuterForces {
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
-template <class T>
-OuterForces<T> OuterForcesOn(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads,
-                             const WagonState<T>& s) {
+template <class T, int kPerBogie>
+OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const TrackParams& track,
+                             const VehicleLoads<T>& loads, const WagonState<T, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const T speed = s.velocity.x[kCarbody];
   OuterForces<T> outer;
   outer.grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
   outer.coupler = loads.front_coupler_n - loads.rear_coupler_n;
   outer.drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
-  outer.shoes = 0.25 * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
-  outer.rolling = 0.25 * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
-  outer.dynamic_brake = 0.25 * loads.dynamic_brake_n;
-  outer.curving = 0.25 * loads.curving_resistance_n;
-  outer.traction = 0.25 * loads.traction_n;
+  constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
+  outer.shoes = kShare * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  outer.rolling = kShare * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
+  outer.dynamic_brake = kShare * loads.dynamic_brake_n;
+  outer.curving = kShare * loads.curving_resistance_n;
+  outer.traction = kShare * loads.traction_n;
   return outer;
 }
 
 /// Adds weight, couplers and drag to the bodies' forces.
-template <class T>
-void AddOuterForces(const Wagon& w, const OuterForces<T>& outer, BodyVector<T>& force) {
-  for (int i = 0; i < kBodies; ++i) {
+template <class T, int kPerBogie>
+void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                    BodyVector<T, kPerBogie>& force) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     const double weight = kGravity * w.mass_kg[i];
     force.x[i] = force.x[i] - weight * outer.grade;
     force.z[i] = force.z[i] - weight;
@@ -161,17 +167,18 @@ struct WheelsetWork {
 
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
-template <class T>
-WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const OuterForces<T>& outer,
-                              const BodyVector<T>& force, double dt, const BodyVector<T>& v0,
-                              BodyVector<T>& v1, WagonOutput<T>* output) {
+template <class T, int kPerBogie>
+WheelsetWork<T> StepWheelsets(const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+                              const OuterForces<T>& outer, const BodyVector<T, kPerBogie>& force, double dt,
+                              const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1,
+                              WagonOutput<T, kPerBogie>* output) {
   const WheelRailParams& contact = w.params.wheel_rail;
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
   const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
-  std::array<CreepLaw<T>, kWheelsets> law;
-  std::array<RollingInput<T>, kWheelsets> rolling;
-  for (int i = 0; i < kWheelsets; ++i) {
+  std::array<CreepLaw<T>, kWheelsetsOf<kPerBogie>> law;
+  std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     law[i] =
         FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
@@ -179,10 +186,11 @@ WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const O
     rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
                   r * retarding};
   }
-  const std::array<RollingResult<T>, kWheelsets> rolled = StepRolling(w.rolling, law, rolling, dt);
+  const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
+      StepRolling(w.rolling, law, rolling, dt);
 
   WheelsetWork<T> work;
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     const RollingInput<T>& in = rolling[i];
     const RollingResult<T>& out = rolled[i];
@@ -210,16 +218,19 @@ WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const O
 
 /// Books the work of a step: force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
-template <class T>
-void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>& wheelsets,
-              const ElementVector<T>& dissipative, const ElementVector<T>& rate0, double dt,
-              const BodyVector<T>& v0, const BodyVector<T>& v1, VehicleWork<T>& work) {
-  const ElementVector<T> rate1 = ElementsOf(w, v1);
+template <class T, int kPerBogie>
+void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer, const WheelsetWork<T>& wheelsets,
+              const ElementVector<T, kPerBogie>& dissipative, const ElementVector<T, kPerBogie>& rate0,
+              double dt, const BodyVector<T, kPerBogie>& v0, const BodyVector<T, kPerBogie>& v1,
+              VehicleWork<T>& work) {
+  const ElementVector<T, kPerBogie> rate1 = ElementsOf(w, v1);
   const auto lost = [dt](const T& f, const T& r0, const T& r1) { return 0.5 * dt * f * (r0 + r1); };
   T pads(0.0), wedges(0.0), guides(0.0), plates(0.0);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     pads = pads + lost(dissipative.pad_x[i], rate0.pad_x[i], rate1.pad_x[i]) +
            lost(dissipative.pad_z[i], rate0.pad_z[i], rate1.pad_z[i]);
+  }
+  for (int i = 0; i < kQuarters; ++i) {
     wedges = wedges + lost(dissipative.wedge[i], rate0.wedge[i], rate1.wedge[i]);
     plates = plates + lost(dissipative.rim[i], rate0.rim[i], rate1.rim[i]);
   }
@@ -228,7 +239,7 @@ void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>
     plates = plates + lost(dissipative.plate_x[b], rate0.plate_x[b], rate1.plate_x[b]);
   }
   T mass_path(0.0);  // sum of mass x (v0 + v1): the grade acts on every body
-  for (int i = 0; i < kBodies; ++i) mass_path = mass_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) mass_path = mass_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
 
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
@@ -244,34 +255,41 @@ void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>
   book(kRollingResistance, outer.rolling * wheelsets.brake_path);
   book(kCurvingResistance, outer.curving * wheelsets.brake_path);
   book(kAirDrag, lost(outer.drag, v0.x[kCarbody], v1.x[kCarbody]));
+  if (w.params.spring_nest.damping_ns_per_m > 0.0) {
+    T dampers(0.0);
+    for (int i = 0; i < kQuarters; ++i) {
+      dampers = dampers + lost(dissipative.nest[i], rate0.nest[i], rate1.nest[i]);
+    }
+    book(kNestDampers, dampers);
+  }
   work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
   work.traction = work.traction + outer.traction * wheelsets.traction_path;
 }
 
-template <class T>
-void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T>& s, WagonOutput<T>* output) {
-  const BodyVector<T> v0 = s.velocity;
-  BodyVector<T>& v1 = s.velocity;
+template <class T, int kPerBogie>
+void StepWagon(const BogieVehicle<kPerBogie>& w, const TrackParams& track, const VehicleLoads<T>& loads,
+               double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+  const BodyVector<T, kPerBogie> v0 = s.velocity;
+  BodyVector<T, kPerBogie>& v1 = s.velocity;
   Drift(v0, 0.5 * dt, s.position);
 
   // Forces at the middle of the step.
-  const ElementVector<T> deflection = ElementsOf(w, s.position);
-  const ElementVector<T> rate0 = ElementsOf(w, v0);
-  const ElementVector<T> elastic = ElasticForces(w, deflection);
-  ElementVector<T> dissipative = DampingForces(w, deflection, elastic, rate0);
-  const RailForces<T> rail = ContactForces(w, track, s);
+  const ElementVector<T, kPerBogie> deflection = ElementsOf(w, s.position);
+  const ElementVector<T, kPerBogie> rate0 = ElementsOf(w, v0);
+  const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
+  ElementVector<T, kPerBogie> dissipative = DampingForces(w, deflection, elastic, rate0);
+  const RailForces<T, kPerBogie> rail = ContactForces(w, track, s);
   const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
-  BodyVector<T> force;
+  BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
   AddElementForces(w, dissipative, force);
   AddOuterForces(w, outer, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
-  ElementVector<T> friction{};
+  ElementVector<T, kPerBogie> friction{};
   friction.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
-  BodyVector<T> friction_force;
+  BodyVector<T, kPerBogie> friction_force;
   AddElementForces(w, friction, friction_force);
   Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
 

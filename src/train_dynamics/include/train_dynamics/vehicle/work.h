@@ -17,13 +17,14 @@ enum Dissipation {
   kRollingResistance,
   kCurvingResistance,
   kAirDrag,
+  kNestDampers,
   kDissipations  ///< their number
 };
 
 inline constexpr std::array<const char*, kDissipations> kDissipationNames = {
     "wheel_rail_creep",   "wheel_rail_normal",  "adaptor_pads", "friction_wedges",
     "bolster_guides",     "centre_plates",      "brake_shoes",  "dynamic_brake",
-    "rolling_resistance", "curving_resistance", "air_drag"};
+    "rolling_resistance", "curving_resistance", "air_drag",           "nest_dampers"};
 
 /// Work done on and by a vehicle since the start [J].
 template <class T>

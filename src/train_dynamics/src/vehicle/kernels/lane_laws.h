@@ -9,9 +9,9 @@
 /// with it by name, so: packs and plain pointers only.
 namespace train_dynamics {
 
-template <class T>
-void Step(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
-          WagonState<T>& state, WagonOutput<T>* output) {
+template <class T, int kPerBogie>
+void Step(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track, const VehicleLoads<T>& loads,
+          double dt, WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
   StepWagon(wagon, track, loads, dt, state, output);
 }
 
@@ -135,10 +135,19 @@ void CloseCylinderGaps(int steps, int count, const GapArrays& at, double* pressu
 
 template <class T>
 constexpr LaneKernels KernelsOver(const char* instruction_set) {
-  return {instruction_set,           kLanesOf<T>,           &StepPacks<T, Wagon>,
-          &StepPacks<T, LtdVehicle>, &RecordPack<T, Wagon>, &RecordPack<T, LtdVehicle>,
-          &ConnectionForces<T>,      &ConnectionWork<T>,    &CylinderPressures<T>,
-          &CylinderGaps<T>,          &CloseCylinderGaps<T>};
+  return {instruction_set,
+          kLanesOf<T>,
+          &StepPacks<T, Wagon>,
+          &StepPacks<T, SixAxleVehicle>,
+          &StepPacks<T, LtdVehicle>,
+          &RecordPack<T, Wagon>,
+          &RecordPack<T, SixAxleVehicle>,
+          &RecordPack<T, LtdVehicle>,
+          &ConnectionForces<T>,
+          &ConnectionWork<T>,
+          &CylinderPressures<T>,
+          &CylinderGaps<T>,
+          &CloseCylinderGaps<T>};
 }
 
 extern const LaneKernels kScalarLaneKernels;
