@@ -81,7 +81,9 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
   for (const train_dynamics::VehicleParams& vehicle : consist_.vehicle_types) {
     at_rest_.emplace_back();
     if (has_bodies) {
-      at_rest_.back() = train_dynamics::StaticEquilibrium(train_dynamics::Wagon(vehicle), 0.0, 0.0).position;
+      at_rest_.back() = train_dynamics::WithBogieVehicle(vehicle, [](const auto& wagon) {
+        return CloseUp::BodiesOf(train_dynamics::StaticEquilibrium(wagon, 0.0, 0.0).position);
+      });
     }
   }
   Forget();

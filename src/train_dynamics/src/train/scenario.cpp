@@ -204,6 +204,17 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     WarnOfConnection(scenario, "train.consist" + Index(i) + ".unit_connection", group.unit_connection,
                      lightest_kg, warnings);
   }
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const WheelsetParams& wheelset = train.consist[i].vehicle.wheelset;
+    if (wheelset.accept_large_inertia || !(wheelset.InertiaRatio() > 1.0)) continue;
+    const std::string group = "train.consist" + Index(i) + ".vehicle.wheelset.";
+    warnings.push_back(
+        {group + "pitch_inertia_kgm2",
+         group + "pitch_inertia_kgm2 is " + Short(wheelset.InertiaRatio()) +
+             " times mass_kg wheel_radius_m^2, more than if all mass were at the tread (a real "
+             "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and "
+             "turn again sooner than real ones; if that is meant, say accept_large_inertia: true"});
+  }
   if (scenario.model != VehicleModel::kTwoD) {
     const auto leaves_out = [&](const std::string& key, std::size_t entries) {
       if (entries == 0) return;

@@ -37,13 +37,18 @@ struct WheelsetParams {
   double mass_kg = kRequired;
   double pitch_inertia_kgm2 = kRequired;  ///< J, of the rotation
   double wheel_radius_m = kRequired;      ///< r
+  bool accept_large_inertia = false;      ///< no warning of a J above m r^2
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("mass_kg", mass_kg, kPositive);
     v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
     v.Number("wheel_radius_m", wheel_radius_m, kPositive);
+    v.Flag("accept_large_inertia", accept_large_inertia);
   }
+
+  /// J / (m r^2) [-]: 1 if all mass were at the tread; no wheelset can have more.
+  double InertiaRatio() const { return pitch_inertia_kgm2 / (mass_kg * wheel_radius_m * wheel_radius_m); }
 };
 
 /// Contact of one wheel with its rail; two per wheelset.

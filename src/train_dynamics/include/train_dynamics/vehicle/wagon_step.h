@@ -9,13 +9,15 @@ namespace train_dynamics {
 ///   1. half drift: positions to the middle of the step;
 ///   2. compliant forces there, dampers at the rates of the step's start (largest elastic frequency about
 ///      1000 1/s, so that 1 ms is inside the explicit limit), weight, couplers, drag;
-///   3. kick of carbody, bolsters and frames, with the wedges' set-valued friction as a complementarity problem
-///      on the relative rates at the END of the step: they stick or slip without chatter;
-///   4. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
+///   3. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
+///   4. kick of carbody, bolsters and frames, which get the opposite of the torques of step 3
+///      (AddReactions), with the wedges' set-valued friction as a complementarity problem on the relative
+///      rates at the END of the step: they stick or slip without chatter;
 ///   5. half drift.
 ///
 /// A force times the mean of the rates before and after is its exact work in the step: the ledger books that.
-/// Left out: the moment by which brake shoes turn the bogie frames, and the wedges' own inertia.
+/// Left out: the wedges' own inertia; and a locked wheel is held against the ground, omega = 0, not against its
+/// frame, whose pitch rate is 1e-3 of the wheels' at most.
 ///
 /// @param output  receives the step's contact and friction forces; may be null
 template <class T, int kPerBogie>
@@ -119,11 +121,13 @@ void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& forc
 /// What acts on the wagon from outside in a step.
 template <class T>
 struct OuterForces {
-  T grade;                                   ///< of the track [-]
-  T coupler;                                 ///< of both couplers together, forward positive [N]
-  T drag;                                    ///< of the air on the carbody, backwards positive [N]
-  T shoes, rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
-  T traction;                                ///< at one wheelset, forward positive [N]
+  T grade;                            ///< of the track [-]
+  T coupler;                          ///< of both couplers together, forward positive [N]
+  T drag;                             ///< of the air on the carbody, backwards positive [N]
+  T shoe_load;                        ///< normal load of the shoes of one wheelset [N], >= 0
+  T shoes;                            ///< their largest friction at the vehicle's speed [N], >= 0
+  T rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
+  T traction;                         ///< at one wheelset, forward positive [N]
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
@@ -137,7 +141,11 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const TrackParams
   outer.coupler = loads.front_coupler_n - loads.rear_coupler_n;
   outer.drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
   constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
-  outer.shoes = kShare * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  outer.shoe_load = kShare * p.brake_rigging.shoe_load_per_pressure_n_per_pa * loads.cylinder_pressure_pa;
+  outer.shoes = T(0.0);
+  if (p.brake_rigging.friction_speed == FrictionSpeed::kVehicle) {
+    outer.shoes = kShare * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  }
   outer.rolling = kShare * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
   outer.dynamic_brake = kShare * loads.dynamic_brake_n;
   outer.curving = kShare * loads.curving_resistance_n;
@@ -158,24 +166,30 @@ void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& oute
   force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * outer.coupler;
 }
 
-/// Sums over the wheelsets of a step.
-template <class T>
-struct WheelsetWork {
-  T creep{}, contact{};             ///< energy lost in creep and in the contacts' dampers [J]
-  T brake_path{}, traction_path{};  ///< way at the tread, times the share of the brake torque that acts [m]
+/// What a step made of the wheelsets.
+template <class T, int kPerBogie = 2>
+struct WheelsetStep {
+  using PerWheelset = std::array<T, kWheelsetsOf<kPerBogie>>;
+  PerWheelset shoes{};  ///< largest friction of the shoes of each [N], >= 0
+  PerWheelset
+      mobilised{};       ///< the share of the retarding torque that acts, -1 ... 1; forward turning: positive
+  T creep{}, contact{};  ///< energy lost in creep and in the contacts' dampers [J]
 };
 
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
 template <class T, int kPerBogie>
-WheelsetWork<T> StepWheelsets(const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
-                              const OuterForces<T>& outer, const BodyVector<T, kPerBogie>& force, double dt,
-                              const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1,
-                              WagonOutput<T, kPerBogie>* output) {
+WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
+                                         const RailForces<T, kPerBogie>& rail, const OuterForces<T>& outer,
+                                         const BodyVector<T, kPerBogie>& force, double dt,
+                                         const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1,
+                                         WagonOutput<T, kPerBogie>* output) {
   const WheelRailParams& contact = w.params.wheel_rail;
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
-  const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
+  const BrakeRiggingParams& rigging = w.params.brake_rigging;
+  const bool by_tread = rigging.friction_speed == FrictionSpeed::kTread;
+  WheelsetStep<T, kPerBogie> step;
   std::array<CreepLaw<T>, kWheelsetsOf<kPerBogie>> law;
   std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -183,16 +197,21 @@ WheelsetWork<T> StepWheelsets(const BogieVehicle<kPerBogie>& w, const RailForces
     law[i] =
         FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
+    T shoes = outer.shoes, holding_shoes = shoes;
+    if (by_tread) {
+      shoes = outer.shoe_load * ShoeFriction(rigging.shoe_friction, r * v0.pitch[b]);
+      holding_shoes = outer.shoe_load * rigging.shoe_friction.standstill_friction_coefficient;
+    }
+    step.shoes[i] = shoes;
     rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
-                  r * retarding};
+                  r * (shoes + outer.rolling + outer.dynamic_brake + outer.curving),
+                  r * (holding_shoes + outer.rolling + outer.dynamic_brake + outer.curving)};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
       StepRolling(w.rolling, law, rolling, dt);
 
-  WheelsetWork<T> work;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    const RollingInput<T>& in = rolling[i];
     const RollingResult<T>& out = rolled[i];
     v1.x[b] = out.speed;
     v1.pitch[b] = out.spin;
@@ -201,28 +220,81 @@ WheelsetWork<T> StepWheelsets(const BogieVehicle<kPerBogie>& w, const RailForces
     const T turned = 0.5 * dt * (v0.pitch[b] + out.spin);
     const T moved = 0.5 * dt * (v0.x[b] + out.speed);
     const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
-    const T mobilised = out.brake_torque / Max(T(1e-300), in.brake_torque);  // -1 ... 1
-    work.creep = work.creep + out.creep_force * (moved - r * turned);
-    work.contact = work.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
-    work.brake_path = work.brake_path + mobilised * r * turned;
-    work.traction_path = work.traction_path + r * turned;
+    step.mobilised[i] = out.brake_torque / Max(T(1e-300), rolling[i].brake_torque);
+    step.creep = step.creep + out.creep_force * (moved - r * turned);
+    step.contact = step.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
       output->creep_force_n[i] = out.creep_force;
       output->creepage[i] = (out.speed - r * out.spin) / Sqrt(out.speed * out.speed + v_ref * v_ref);
-      output->shoe_force_n[i] = outer.shoes * mobilised;
+      output->shoe_force_n[i] = step.shoes[i] * step.mobilised[i];
     }
   }
-  return work;
+  return step;
 }
 
-/// Books the work of a step: force x mean rate x dt, element by element.
+/// Adds to the bodies' forces what the torques on the wheelsets react with:
+///
+///   M_frame += r [ mobilised (S + R + F_db) - F_t ]   over the wheelsets of the bogie, nose down positive
+///
+/// S, the shoes' friction, on the carbody where they hang on it. Curving resistance comes from the rail and
+/// reacts on no body.
+template <class T, int kPerBogie>
+void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                  const WheelsetStep<T, kPerBogie>& wheelsets, BodyVector<T, kPerBogie>& force) {
+  const BrakeReaction reaction = w.params.brake_rigging.reaction;
+  if (reaction == BrakeReaction::kNone) return;
+  const double r = w.rolling.radius_m;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+    const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
+    const T& share = wheelsets.mobilised[i];
+    force.pitch[hanger] = force.pitch[hanger] + r * (share * wheelsets.shoes[i]);
+    force.pitch[frame] =
+        force.pitch[frame] + r * (share * (outer.rolling + outer.dynamic_brake) - outer.traction);
+  }
+}
+
+/// Books the work of the torques on the wheelsets: of each with the rotation of the wheelset relative to the
+/// body that it reacts on.
+template <class T, int kPerBogie>
+void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                 const WheelsetStep<T, kPerBogie>& wheelsets, double dt, const BodyVector<T, kPerBogie>& v0,
+                 const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
+  const BrakeReaction reaction = w.params.brake_rigging.reaction;
+  const double half = 0.5 * dt * w.rolling.radius_m;
+  T shoes(0.0), curving(0.0), bearing_path(0.0), traction_path(0.0);
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int b = kWheelset1 + i, frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+    const T path = half * (v0.pitch[b] + v1.pitch[b]);
+    T of_shoes = path, of_frame = path;
+    if (reaction != BrakeReaction::kNone) {
+      of_frame = path - half * (v0.pitch[frame] + v1.pitch[frame]);
+      of_shoes = reaction == BrakeReaction::kFrame ? of_frame
+                                                   : path - half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
+    }
+    shoes = shoes + wheelsets.shoes[i] * (wheelsets.mobilised[i] * of_shoes);
+    bearing_path = bearing_path + wheelsets.mobilised[i] * of_frame;
+    curving = curving + outer.curving * (wheelsets.mobilised[i] * path);
+    traction_path = traction_path + of_frame;
+  }
+  const auto book = [&work](Dissipation element, const T& energy) {
+    work.dissipated[element] = work.dissipated[element] + energy;
+  };
+  book(kBrakeShoes, shoes);
+  book(kDynamicBrake, outer.dynamic_brake * bearing_path);
+  book(kRollingResistance, outer.rolling * bearing_path);
+  book(kCurvingResistance, curving);
+  work.traction = work.traction + outer.traction * traction_path;
+}
+
+/// Books the work of a step but for the torques: force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
 template <class T, int kPerBogie>
-void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer, const WheelsetWork<T>& wheelsets,
-              const ElementVector<T, kPerBogie>& dissipative, const ElementVector<T, kPerBogie>& rate0,
-              double dt, const BodyVector<T, kPerBogie>& v0, const BodyVector<T, kPerBogie>& v1,
-              VehicleWork<T>& work) {
+void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+              const WheelsetStep<T, kPerBogie>& wheelsets, const ElementVector<T, kPerBogie>& dissipative,
+              const ElementVector<T, kPerBogie>& rate0, double dt, const BodyVector<T, kPerBogie>& v0,
+              const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
   const ElementVector<T, kPerBogie> rate1 = ElementsOf(w, v1);
   const auto lost = [dt](const T& f, const T& r0, const T& r1) { return 0.5 * dt * f * (r0 + r1); };
   T pads(0.0), wedges(0.0), guides(0.0), plates(0.0);
@@ -250,10 +322,6 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer, con
   book(kFrictionWedges, wedges);
   book(kBolsterGuides, guides);
   book(kCentrePlates, plates);
-  book(kBrakeShoes, outer.shoes * wheelsets.brake_path);
-  book(kDynamicBrake, outer.dynamic_brake * wheelsets.brake_path);
-  book(kRollingResistance, outer.rolling * wheelsets.brake_path);
-  book(kCurvingResistance, outer.curving * wheelsets.brake_path);
   book(kAirDrag, lost(outer.drag, v0.x[kCarbody], v1.x[kCarbody]));
   if (w.params.spring_nest.damping_ns_per_m > 0.0) {
     T dampers(0.0);
@@ -263,7 +331,6 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer, con
     book(kNestDampers, dampers);
   }
   work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
-  work.traction = work.traction + outer.traction * wheelsets.traction_path;
 }
 
 template <class T, int kPerBogie>
@@ -285,6 +352,9 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const TrackParams& track, const
   AddElementForces(w, dissipative, force);
   AddOuterForces(w, outer, force);
 
+  const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
+  AddReactions(w, outer, wheelsets, force);
+
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
   ElementVector<T, kPerBogie> friction{};
@@ -293,13 +363,13 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const TrackParams& track, const
   AddElementForces(w, friction, friction_force);
   Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
 
-  const WheelsetWork<T> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
   if (output != nullptr) output->wedge_friction_n = friction.wedge;
 
   Drift(v1, 0.5 * dt, s.position);
 
   dissipative.wedge = friction.wedge;
   BookWork(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
+  BookTorques(w, outer, wheelsets, dt, v0, v1, s.work);
 }
 
 }  // namespace train_dynamics
