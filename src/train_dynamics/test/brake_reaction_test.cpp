@@ -104,8 +104,8 @@ std::array<double, 5> AtFortyOne(BrakeReaction reaction) {
 TEST(BrakeReaction, NumbersOfAnIndependentProgram) {
   // Half a unit of the last digit given; the moment is that of one instant of a wagon that still swings a little.
   const auto frame = AtFortyOne(BrakeReaction::kFrame), none = AtFortyOne(BrakeReaction::kNone);
-  EXPECT_NEAR(1e-3 * frame[0], 96.78, 0.2);
-  EXPECT_NEAR(1e-3 * none[0], 70.5, 0.2);
+  EXPECT_NEAR(1e-3 * frame[0], 96.78, 0.05);
+  EXPECT_NEAR(1e-3 * none[0], 70.5, 0.05);
   const double with_reaction[] = {12.9, -3.7, 3.7, -12.9}, without[] = {6.8, 1.9, -1.9, -6.8};
   for (int i = 0; i < kWheelsets; ++i) {
     EXPECT_NEAR(1e-3 * frame[1 + i], with_reaction[i], 0.06) << "wheelset " << i + 1;
