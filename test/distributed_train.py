@@ -60,13 +60,13 @@ class Launch:
 
 
 def train_sim(*arguments, scenario=SHORT_TRAIN):
-    done = subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(scenario), *arguments], check=True,
+    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(scenario), *arguments], check=True,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return json.loads(done.stdout)
 
 
 def verify(recording):
-    done = subprocess.run(["rosrun", "ltd_master", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
+    done = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True)
     return done.returncode, done.stdout + done.stderr
 
@@ -129,6 +129,14 @@ class DistributedTrain(unittest.TestCase):
     def test_exchange_interval_and_set(self):
         expected = train_sim("--set", "exchange_interval_s=0.005", "--set", "initial_speed_kmh=50")
         self.assert_complete(self.launch("nodes:=2", "exchange_interval:=0.005", "set:=initial_speed_kmh=50"), expected)
+        self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
+
+    def test_models_mixed_in_one_train(self):
+        mixed = "train.consist[1].model=ltd"
+        expected = train_sim("--set", mixed)
+        for nodes in 1, 3:
+            with self.subTest(nodes=nodes):
+                self.assert_complete(self.launch(f"nodes:={nodes}", f"set:={mixed}"), expected)
         self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
 
     def test_ltd_runs_in_the_master_alone(self):

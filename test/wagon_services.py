@@ -41,7 +41,7 @@ def text_digest(text):
 def resolved_scenario():
     """The scenario as the master sends it, with all parts in place."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
+        subprocess.run(["rosrun", "train_sim", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return (pathlib.Path(folder) / "config.yaml").read_text()
 
@@ -101,7 +101,7 @@ class WagonServices(unittest.TestCase):
         self.assertTrue(first.ok, first.message)
         self.assertEqual(self.step(self.step_request(0, run_id=self.run_id)), first)
         self.refused(self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0, 0.0])),
-                     "exchange 0 has been computed already, with other forces or pressures")
+                     "exchange 0 has been computed already, with other loads")
         # About 22.2 m/s for 2 ms; brake and couplers change the speed by far less than 1 % in that time.
         for distance in first.head_displacement_m:
             self.assertAlmostEqual(distance, 80 / 3.6 * 0.002, delta=0.01 * 80 / 3.6 * 0.002)

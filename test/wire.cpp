@@ -16,9 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "ltd_master/rank_caller.h"
-#include "ltd_master/rank_messages.h"
-#include "ltd_master/ros_transport.h"
+#include "ltd_master/ranks/rank_caller.h"
+#include "ltd_master/ranks/rank_messages.h"
+#include "ltd_master/ranks/ros_transport.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 
@@ -70,14 +70,15 @@ std::vector<std::uint64_t> Fingerprint(const LoadedScenario& scenario, train_dyn
   std::vector<std::uint64_t> prints;
   TrainMaster master(scenario.params, scenario.consist, transport, scenario.pressures);
   master.AddObserver([&](const train_dynamics::TrainRecord& record) {
-    const train_dynamics::ExchangeReply& vehicles = record.vehicles;
+    const train_dynamics::VehicleRecords& vehicles = record.vehicles;
     train_dynamics::Digest digest;
     digest.Add(record.state_digest);
-    for (const auto* array : {&vehicles.position_m, &vehicles.speed_mps, &vehicles.shoe_force_n,
-                              &vehicles.wheel_force_n, &vehicles.creepage}) {
-      for (const double value : *array) digest.Add(value);
-    }
-    if (record.ledger != nullptr) {
+    train_dynamics::ForEachRecordField(
+        [&digest](const train_dynamics::RecordInfo&, const std::vector<double>& array) {
+          for (const double value : array) digest.Add(value);
+        },
+        vehicles);
+    if (record.ledger.has_value()) {
       digest.Add(record.ledger->Stored());
       digest.Add(record.ledger->Dissipated());
     }
@@ -434,13 +435,13 @@ TEST_F(OddRank, WhoseReplyIsToAnotherCallIsWaitedFor) {
 }
 
 TEST(Wire, CarriesTheBitsOfTheTrainInOneProcess) {
-  for (const char* model : {"2d", "ltd"}) {
-    const LoadedScenario scenario = Load({std::string("model=") + model});
+  for (const std::string model : {"model=2d", "model=ltd", "train.consist[1].model=ltd"}) {
+    const LoadedScenario scenario = Load({model});
     train_dynamics::InProcessTransport in_process(scenario.params, scenario.consist, 1);
     const std::vector<std::uint64_t> expected = Fingerprint(scenario, in_process);
     for (const int ranks : {1, 3, kVehicles}) {
       for (const Path path : kPaths) {
-        SCOPED_TRACE(std::string(model) + ", ranks: " + std::to_string(ranks) + ", " + PathName({path, 0}));
+        SCOPED_TRACE(model + ", ranks: " + std::to_string(ranks) + ", " + PathName({path, 0}));
         RosTransportOptions options;
         Choose(path, options);
         RosTransport transport(RanksIn("/ranks_" + std::to_string(ranks), ranks), NextRun(), scenario.params,

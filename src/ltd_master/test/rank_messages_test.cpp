@@ -1,4 +1,4 @@
-#include "ltd_master/rank_messages.h"
+#include "ltd_master/ranks/rank_messages.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "ltd_master/late_watch.h"
+#include "ltd_master/ranks/late_watch.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/snapshot.h"
 
@@ -22,10 +22,10 @@ constexpr int kCount = 3;  // vehicles of each of the two ranks
 class RankMessagesTest : public testing::Test {
  protected:
   /// What the master says of them; empty: nothing.
-  std::string Complaint(const std::function<void(StepResponse&)>& spoil, const std::string& model = "2d") {
+  std::string Complaint(const std::function<void(StepResponse&)>& spoil,
+                        const std::string& model = "model=2d") {
     const auto scenario = train_dynamics::config::LoadScenario(
-        std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml",
-        {"model=" + model, "detail_vehicles=[]"});
+        std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml", {model, "detail_vehicles=[]"});
     RankMessages messages({{"/a", 0, kCount}, {"/b", kCount, kCount}}, 1, scenario.params);
     train_dynamics::ExchangeRequest request;
     request.exchange = 4;
@@ -45,19 +45,16 @@ class RankMessagesTest : public testing::Test {
     reply.ok = true;
     reply.exchange = 4;
     train_brake_msgs::RankRecord& record = reply.record;
-    for (auto* array :
-         {&reply.head_displacement_m, &reply.head_velocity_mps, &record.position_m, &record.speed_mps,
-          &record.shoe_force_n, &record.wheel_force_n, &record.creepage, &record.kinetic_j,
-          &record.potential_j, &record.gravity_work_j, &record.traction_work_j}) {
-      array->assign(kCount, 1.0);
-    }
-    record.dissipated_j.assign(kCount * train_dynamics::kDissipations, 1.0);
+    const auto fill = [](const auto& field, auto& array) { array.assign(kCount * field.numbers, 1.0); };
+    train_dynamics::ForEachReplyField(fill, reply);
+    train_dynamics::ForEachRecordField(fill, record);
+    train_dynamics::ForEachEnergy(fill, record);
     record.state_digest.assign(kCount, 1);
     reply.snapshot = Snapshot(first, 1.0);
     return reply;
   }
   static std::vector<std::uint8_t> Snapshot(std::uint64_t first, double number) {
-    return train_dynamics::Encode(train_dynamics::BlockSnapshot{5, first, kCount, {1.0, number, 1.0}});
+    return train_dynamics::Encode(train_dynamics::BlockSnapshot{5, first, {{1.0}, {number}, {1.0}}});
   }
 
   train_dynamics::ExchangeReply reply_{2 * kCount, {}};
@@ -71,8 +68,24 @@ TEST_F(RankMessagesTest, TakesWhatIsSound) {
                 [](auto& r) {
                   r.record.wheel_force_n = r.record.creepage = {kNaN, kNaN, kNaN};
                 },
-                "ltd"),
+                "model=ltd"),
             "");
+}
+
+TEST_F(RankMessagesTest, AsksOfEachVehicleWhatItsModelComputes) {
+  const std::string mixed = "train.consist[2].model=ltd";  // vehicle 6, the last one of rank b
+  EXPECT_EQ(Complaint([](auto& r) { r.record.creepage[2] = kNaN; }, mixed), "");
+  EXPECT_NE(Complaint([](auto& r) { r.record.creepage[1] = kNaN; }, mixed), "");
+  EXPECT_NE(Complaint([](auto& r) { r.record.shoe_force_n[2] = kNaN; }, mixed), "");
+}
+
+TEST_F(RankMessagesTest, RefusesArraysOfAnotherSize) {
+  EXPECT_EQ(Complaint([](auto& r) { r.record.creepage.pop_back(); }),
+            "/b (vehicles 4-6), exchange 4: replied 2 values of creepage, 3 are expected");
+  EXPECT_EQ(Complaint([](auto& r) { r.head_velocity_mps.clear(); }),
+            "/b (vehicles 4-6), exchange 4: replied 0 values of head_velocity_mps, 3 are expected");
+  EXPECT_EQ(Complaint([](auto& r) { r.record.kinetic_j.push_back(0.0); }),
+            "/b (vehicles 4-6), exchange 4: replied 4 values of kinetic_j, 3 are expected");
 }
 
 TEST_F(RankMessagesTest, TakesFaultsOfTheRanksOwnVehiclesOnly) {
@@ -97,7 +110,8 @@ TEST_F(RankMessagesTest, NamesWhatIsNotFinite) {
   EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }), of_vehicle_5("shoe_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.wheel_force_n[1] = kNaN; }), of_vehicle_5("wheel_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.creepage[1] = kNaN; }), of_vehicle_5("creepage"));
-  EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }, "ltd"), of_vehicle_5("shoe_force_n"));
+  EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }, "model=ltd"),
+            of_vehicle_5("shoe_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.dissipated_j.back() = kNaN; }),
             "/b (vehicles 4-6), exchange 4: replied energies that are not finite");
   EXPECT_EQ(Complaint([](auto& r) { r.snapshot = Snapshot(kCount, kNaN); }),

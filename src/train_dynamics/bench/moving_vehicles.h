@@ -35,27 +35,25 @@ class MovingVehicles {
       : vehicle(std::move(vehicle_)), states(kVehicles, start) {
     for (int i = 0; i <= kVehicles; ++i) {
       const double share = static_cast<double>(i) / kVehicles;
-      coupler_force_n_.push_back(4e5 * (share - 0.5));
-      cylinder_pressure_pa_.push_back(3.3e5 + 1e5 * share);
+      loads_.coupler_force_n.push_back(4e5 * (share - 0.5));
+      loads_.cylinder_pressure_pa.push_back(3.3e5 + 1e5 * share);
     }
-    head_displacement_m_.resize(kVehicles);
-    head_velocity_mps_.resize(kVehicles);
+    ResizeReply(kVehicles, reply_);
     VehicleBatch<Vehicle> batch(vehicle, BestLaneKernels(), states);
-    batch.Advance(track, kTimeStep, 2000, arrays(), true);
+    batch.Advance(track, kTimeStep, 2000, loads(), reply(), true);
     for (int i = 0; i < kVehicles; ++i) states[i] = batch.StateOf(i);
   }
 
-  VehicleArrays arrays() {
-    return {&coupler_force_n_[0], &coupler_force_n_[1], &cylinder_pressure_pa_[0], &head_displacement_m_[0],
-            &head_velocity_mps_[0]};
-  }
+  LoadPlaces loads() const { return PlacesOf(loads_, 0); }
+  ReplyPlaces reply() { return PlacesOf(reply_, 0); }
 
   Vehicle vehicle;
-  TrackParams track;
+  Track track;
   std::vector<State> states;
 
  private:
-  std::vector<double> coupler_force_n_, cylinder_pressure_pa_, head_displacement_m_, head_velocity_mps_;
+  LoadArrays loads_;
+  ReplyArrays reply_;
 };
 
 inline MovingVehicles<Wagon> RollingWagons() {

@@ -23,29 +23,45 @@ namespace train_dynamics {
 namespace {
 
 /// What every message is made of; a digest travels in the bits of one.
-using Numbers = std::vector<double>;
+using Row = std::vector<double>;
 
-/// A request is what shall be done, the forces around the rank's vehicles and their pressures.
-enum class Order { kEnd, kStep, kStepAndRecord };
-int RequestSize(const Rank& rank) { return 1 + rank.count + 1 + rank.count; }
-
-/// A reply is whether all is sound and the heads' displacements and velocities; with a record, its arrays, too.
-constexpr int kHeadArrays = 2, kRecordArrays = 6;
-int ReplySize(const Rank& rank, bool record) {
-  return 1 + rank.count * (kHeadArrays + (record ? kRecordArrays : 0));
+/// Calls function(array) for each load of a list's array that is given always. The others have no place here.
+template <class Loads, class Function>
+void ForEachGivenLoad(Loads& loads, const Function& function) {
+  ForEachLoad(
+      [&](const LoadInfo& load, auto& array) {
+        if (load.given == Given::kAlways) {
+          function(array);
+        } else if (!array.empty()) {
+          throw std::invalid_argument(std::string("mpi_train does not carry ") + load.name);
+        }
+      },
+      loads);
 }
 
-/// Copies numbers between the arrays of a reply, from vehicle `first` on, and a message.
+/// A request is what shall be done, the forces around the rank's vehicles and their other loads.
+enum class Order { kEnd, kStep, kStepAndRecord };
+int RequestSize(const Rank& rank) {
+  int size = 1 + rank.count + 1;
+  LoadArrays none;
+  ForEachGivenLoad(none, [&](const Row&) { size += rank.count; });
+  return size;
+}
+
+/// A reply is whether all is sound, what every exchange replies, and, with a record, that.
+constexpr int kDigests = 1;
+int ReplySize(const Rank& rank, bool record) {
+  return 1 + rank.count * (kReplyNumbers + (record ? kRecordNumbers + kDigests : 0));
+}
+
+/// Calls copy(array of a reply, numbers of each vehicle) for all that a message holds.
 template <class Copy>
 void ForEachArray(ExchangeReply& reply, bool record, const Copy& copy) {
-  copy(reply.head_displacement_m);
-  copy(reply.head_velocity_mps);
+  const auto copy_field = [&](const RecordInfo& field, auto& array) { copy(array, field.numbers); };
+  ForEachReplyField(copy_field, reply);
   if (!record) return;
-  for (Numbers* array :
-       {&reply.position_m, &reply.speed_mps, &reply.shoe_force_n, &reply.wheel_force_n, &reply.creepage}) {
-    copy(*array);
-  }
-  copy(reply.state_digest);
+  ForEachRecordField(copy_field, reply);
+  copy(reply.state_digest, 1);
 }
 
 /// Where the ranks' parts of a message begin; rank 0, the master, has none.
@@ -72,7 +88,7 @@ class MpiTransport : public Transport {
         numbers_(request_.total) {}
 
   void Start(ExchangeReply& reply) override { Gather(true, reply); }
-  void Resume(std::uint64_t, const std::vector<double>&, ExchangeReply&) override {
+  void Resume(std::uint64_t, const std::vector<StateRow>&, ExchangeReply&) override {
     throw SnapshotError("cannot be taken up here: this train starts at time 0");
   }
 
@@ -81,7 +97,8 @@ class MpiTransport : public Transport {
     for (const Rank& rank : ranks_) {
       *to++ = static_cast<double>(request.record ? Order::kStepAndRecord : Order::kStep);
       to = std::copy_n(&request.coupler_force_n[rank.first], rank.count + 1, to);
-      to = std::copy_n(&request.cylinder_pressure_pa[rank.first], rank.count, to);
+      ForEachGivenLoad(request,
+                       [&](const Row& array) { to = std::copy_n(&array[rank.first], rank.count, to); });
     }
     Scatter();
     Gather(request.record, reply);
@@ -102,22 +119,22 @@ class MpiTransport : public Transport {
 
   void Gather(bool record, ExchangeReply& reply) {
     const Layout& layout = record ? record_ : reply_;
-    Numbers replies(layout.total);
+    Row replies(layout.total);
     MPI_Gatherv(nullptr, 0, MPI_DOUBLE, replies.data(), layout.sizes.data(), layout.begins.data(), MPI_DOUBLE,
                 0, MPI_COMM_WORLD);
     const double* from = replies.data();
     for (const Rank& rank : ranks_) {
       if (*from++ != 1.0) reply.fault = {rank.first, "has left the domain of the laws, or one behind it"};
-      ForEachArray(reply, record, [&](auto& array) {
-        std::memcpy(&array[rank.first], from, rank.count * sizeof(double));
-        from += rank.count;
+      ForEachArray(reply, record, [&](auto& array, int numbers) {
+        std::memcpy(&array[rank.first * numbers], from, rank.count * numbers * sizeof(double));
+        from += rank.count * numbers;
       });
     }
   }
 
   std::vector<Rank> ranks_;
   Layout request_, reply_, record_;
-  Numbers numbers_;
+  Row numbers_;
 };
 
 void RunMaster(const config::LoadedScenario& scenario, const std::vector<Rank>& ranks) {
@@ -139,10 +156,10 @@ void RunVehicles(const config::LoadedScenario& scenario, const Rank& rank) {
   ExchangeRequest request;
   request.dt_s = scenario.params.dt_s;
   request.steps = scenario.params.StepsPerExchange();
-  Numbers numbers;
+  Row numbers;
   const auto send = [&](bool sound, bool record) {
     numbers = {sound ? 1.0 : 0.0};
-    ForEachArray(reply, record, [&](const auto& array) {
+    ForEachArray(reply, record, [&](const auto& array, int) {
       numbers.resize(numbers.size() + array.size());
       std::memcpy(&*numbers.end() - array.size(), array.data(), array.size() * sizeof(double));
     });
@@ -158,9 +175,13 @@ void RunVehicles(const config::LoadedScenario& scenario, const Rank& rank) {
     const auto order = static_cast<Order>(numbers[0]);
     if (order == Order::kEnd) return;
     request.record = order == Order::kStepAndRecord;
-    const auto pressures = numbers.begin() + 1 + rank.count + 1;
-    request.coupler_force_n.assign(numbers.begin() + 1, pressures);
-    request.cylinder_pressure_pa.assign(pressures, numbers.end());
+    auto from = numbers.begin() + 1;
+    const auto take = [&](Row& array, int count) {
+      array.assign(from, from + count);
+      from += count;
+    };
+    take(request.coupler_force_n, rank.count + 1);
+    ForEachGivenLoad(request, [&](Row& array) { take(array, rank.count); });
     const bool sound = block->Advance(request, 0, reply);
     send(sound, request.record);
   }

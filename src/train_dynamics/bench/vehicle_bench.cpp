@@ -18,7 +18,7 @@ void StepVehicles(benchmark::State& state, const LaneKernels& kernels, MovingVeh
   VehicleBatch<Vehicle> batch = start;
   int step = 0;
   for (auto _ : state) {
-    const bool sound = batch.Advance(moving.track, kTimeStep, 1, moving.arrays(), false);
+    const bool sound = batch.Advance(moving.track, kTimeStep, 1, moving.loads(), moving.reply(), false);
     benchmark::DoNotOptimize(sound);
     if (++step % 1000 == 0) batch = start;  // the same motion, however long the measurement
   }

@@ -21,7 +21,7 @@ namespace {
 /// The bytes of a snapshot with these contents, made without its code.
 Bytes Seal(const char* mark, const std::uint8_t* contents, std::size_t size) {
   Bytes bytes(mark, mark + 8);
-  bytes.push_back(1);  // format version
+  bytes.push_back(2);  // format version
   bytes.resize(16);
   bytes.insert(bytes.end(), contents, contents + size);
   Digest checksum;
@@ -61,12 +61,13 @@ void Resume(const TrainCheckpoint& checkpoint) {
 
 void Read(const Bytes& bytes) {
   try {
-    fuzz::Require(Encode(DecodeBlockSnapshot(bytes)) == bytes, "what was decoded encodes to the same");
+    train_brake_build::fuzz::Require(Encode(DecodeBlockSnapshot(bytes)) == bytes,
+                                     "what was decoded encodes to the same");
   } catch (const SnapshotError&) {
   }
   try {
     const TrainCheckpoint checkpoint = DecodeTrainCheckpoint(bytes);
-    fuzz::Require(Encode(checkpoint) == bytes, "what was decoded encodes to the same");
+    train_brake_build::fuzz::Require(Encode(checkpoint) == bytes, "what was decoded encodes to the same");
     Resume(checkpoint);
   } catch (const SnapshotError&) {
   } catch (const SimulationFault&) {

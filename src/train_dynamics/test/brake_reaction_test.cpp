@@ -277,6 +277,20 @@ TEST(OreWagons, TheLoadedOneIsThePapersWithARealWheelset) {
 
 // ---- on every instruction set ----------------------------------------------------------------------------------
 
+LoadPlaces Loads(const std::vector<double>& coupler, const std::vector<double>& pressure) {
+  LoadPlaces places;
+  places.front_coupler_n = coupler.data();
+  places.rear_coupler_n = coupler.data() + 1;
+  places.cylinder_pressure_pa = pressure.data();
+  return places;
+}
+ReplyPlaces Reply(std::vector<double>& x, std::vector<double>& v) {
+  ReplyPlaces places;
+  places.head_displacement_m = x.data();
+  places.head_velocity_mps = v.data();
+  return places;
+}
+
 class ReactionKernels : public testing::TestWithParam<LaneKernels> {};
 
 TEST_P(ReactionKernels, SlideAsTheScalarStepDoes) {
@@ -297,8 +311,7 @@ TEST_P(ReactionKernels, SlideAsTheScalarStepDoes) {
         loads.cylinder_pressure_pa = pressure[i];
         for (int step = 0; step < 5; ++step) StepWagon<double, 2>(wagon, {}, loads, 1e-3, states[i], nullptr);
       }
-      ASSERT_TRUE(batch.Advance(
-          {}, 1e-3, 5, {coupler.data(), coupler.data() + 1, pressure.data(), x.data(), v.data()}, false));
+      ASSERT_TRUE(batch.Advance({}, 1e-3, 5, Loads(coupler, pressure), Reply(x, v), false));
     }
     int locked = 0;
     for (int i = 0; i < kVehicles; ++i) {

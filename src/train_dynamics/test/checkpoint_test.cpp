@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "simulate.h"
-#include "train_dynamics/config/writer.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/train/run_summary.h"
 #include "train_dynamics/train/snapshot.h"
 
@@ -31,8 +31,8 @@ struct TestRun {
         summary(loaded.params) {
     master.AddObserver([this](const TrainRecord& record) {
       summary.Observe(record);
-      seen.push_back({record.exchange, record.state_digest, record.coupler_force_n, record.acceleration_mps2,
-                      record.vehicles.speed_mps, record.vehicles.shoe_force_n});
+      seen.push_back({record.exchange, record.state_digest, record.held.coupler_force_n,
+                      record.acceleration_mps2, record.vehicles.speed_mps, record.vehicles.shoe_force_n});
     });
   }
   // Runs on; leaves the checkpoint of an exchange.
@@ -98,6 +98,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"StickSpringsRemember",
                          "emergency",
                          {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
+                    // All three models in one train.
+                    Case{"Mixed",
+                         "emergency",
+                         {"duration_s=6", "train.consist[0].model=ltd",
+                          "train.consist[1].model=ltd-no-inertia"}},
                     // After the wagon has come to rest: the summary remembers when it stopped.
                     Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
     [](const auto& c) { return std::string(c.param.name); });
@@ -152,13 +157,11 @@ TEST(Snapshot, EveryDamagedByteIsNoticed) {
   BlockSnapshot snapshot;
   snapshot.exchange = 7;
   snapshot.first = 2;
-  snapshot.count = 3;
-  snapshot.state = {1.0, -2.0, 3.5};
+  snapshot.states = {{1.0, -2.0, 3.5}, {}, {4.0}};  // rows of vehicles of different kinds
   const std::vector<std::uint8_t> bytes = Encode(snapshot);
-  EXPECT_EQ(DecodeBlockSnapshot(bytes).state, snapshot.state);
+  EXPECT_EQ(DecodeBlockSnapshot(bytes).states, snapshot.states);
   EXPECT_EQ(DecodeBlockSnapshot(bytes).exchange, 7u);
   EXPECT_EQ(DecodeBlockSnapshot(bytes).first, 2u);
-  EXPECT_EQ(DecodeBlockSnapshot(bytes).count, 3u);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     std::vector<std::uint8_t> damaged = bytes;
     damaged[i] ^= 0x10;

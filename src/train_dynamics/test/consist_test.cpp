@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/scenario.h"
-#include "train_dynamics/validate.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 
 namespace train_dynamics {
@@ -52,9 +52,9 @@ TEST(Consist, LengthsAndUnits) {
   EXPECT_EQ(consist.vehicle(0).length_m, 20.5);
   EXPECT_EQ(consist.vehicle(6).length_m, 10.5);
   train.consist[1].count = 7;
-  EXPECT_THROW(Validate(train), std::invalid_argument);  // not whole units
+  EXPECT_THROW(strict_config::Validate(train), std::invalid_argument);  // not whole units
   train.consist.clear();
-  EXPECT_THROW(Validate(train), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(train), std::invalid_argument);
 }
 
 TEST(VehicleIndex, CountsFromBothEnds) {

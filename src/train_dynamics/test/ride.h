@@ -8,6 +8,7 @@
 #include <functional>
 #include <numeric>
 
+#include "train_dynamics/track/track.h"
 #include "train_dynamics/vehicle/wagon.h"
 #include "train_dynamics/vehicle/wagon_step.h"
 
@@ -23,7 +24,7 @@ inline double EmergencyPressure(double time_s) { return kFullPressure * (1.0 - s
 template <int kPerBogie>
 class RideOn {
  public:
-  RideOn(const VehicleParams& params, const TrackParams& on, double speed, double origin = 0.0)
+  RideOn(const VehicleParams& params, const Track& on, double speed, double origin = 0.0)
       : wagon(params), track(on), state(StaticEquilibrium(wagon, origin, speed)) {
     Rebook();
   }
@@ -62,7 +63,7 @@ class RideOn {
   double Distance() const { return state.position.x[kCarbody]; }
 
   BogieVehicle<kPerBogie> wagon;
-  TrackParams track;
+  Track track;
   VehicleLoads<double> loads;
   std::function<VehicleLoads<double>(double time_s)> loads_at;
   WagonState<double, kPerBogie> state;

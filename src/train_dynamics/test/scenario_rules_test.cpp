@@ -9,12 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "train_dynamics/config/error_list.h"
+#include "strict_config/error_list.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/validate.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 
 namespace train_dynamics::config {
 namespace {
+
+using strict_config::Error;
+using strict_config::ErrorList;
+using strict_config::Validate;
 
 namespace fs = std::filesystem;
 using Settings = std::vector<std::string>;
@@ -241,7 +247,9 @@ TEST_F(ScenarioRules, HugeCountsAreRefusedBeforeAnythingIsMadeOfThem) {
             "--set " + count + "=1e99: " + count + " must be in [1, 100000], got 1e99");
   EXPECT_EQ(
       ErrorsOf(Scenario("emergency"), {"model=ltd", "detail_vehicles=[]", "train.consist[1].count=99900"}),
-      "trains/paper_242.yaml:6: train.consist must have at most 100000 vehicles in all");
+      "trains/paper_242.yaml:9: train.consist[3].count makes the train too long: it must have at most 100000 "
+      "vehicles "
+      "in all, got 120");
 
   std::string flood = "base: full_service\ncommands:\n";
   for (int i = 0; i < 15000; ++i) flood += "- {time_s: 1, kind: apply, reduction_kpa: 100}\n";
@@ -417,6 +425,107 @@ TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
       "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
   EXPECT_EQ(WarningsOf("a"),
             "scenarios/a.yaml:6: the ltd-no-inertia model leaves out track.friction_patches (2 entries)");
+}
+
+TEST_F(ScenarioRules, ListsOutOfOrderNameTheirEntries) {
+  const std::string track = Put("scenarios/a.yaml",
+                                "base: dip\ntrack:\n  name: t\n  grades:\n  - {from_m: 0, grade_percent: 1}\n"
+                                "  - {from_m: 90, grade_percent: 0}\n  - {from_m: 80, grade_percent: 1}\n"
+                                "  - {from_m: 85, grade_percent: 2}\n  - {from_m: 85, grade_percent: 3}\n");
+  EXPECT_EQ(
+      ErrorsOf(track),
+      "scenarios/a.yaml:7: track.grades[2].from_m must be greater than that of the entry before, 90, got 80\n"
+      "scenarios/a.yaml:9: track.grades[4].from_m must be greater than that of the entry before, 85, got 85");
+  EXPECT_EQ(
+      ErrorsOf(Scenario("dip"), {"brake.service.reduction_kpa[2]=60"}),
+      "--set brake.service.reduction_kpa[2]=60: brake.service.reduction_kpa[2] must be greater than the one "
+      "before, 70, got 60");
+}
+
+TEST_F(ScenarioRules, RampsOfPatchesNameTheirEntries) {
+  const std::string file = Put("scenarios/a.yaml",
+                               "base: dip\ntrack:\n  name: t\n  friction_patches:\n"
+                               "  - {from_m: 10, to_m: 20, adhesion: low}\n"
+                               "  - {from_m: 20.5, to_m: 30, adhesion: {base: wet, slip_reduction: 0.2}, "
+                               "ramp_length_m: 2}\n"
+                               "  - {from_m: 60, to_m: 70, adhesion: low, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(ErrorsOf(file),
+            "scenarios/a.yaml:7: track.friction_patches[2].friction_coefficient must not stand beside "
+            "adhesion, which "
+            "has one, got 0.1");
+  EXPECT_EQ(
+      ErrorsOf(file, {"track.friction_patches[2]={from_m: 60, to_m: 70, friction_coefficient: 0.1}"}),
+      "scenarios/a.yaml:6: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
+      "surface: half of a ramp lies on each side of an end, and the ones at 20 m (1 m long) and 20.5 m (2 m) "
+      "overlap, got 2");
+}
+
+TEST_F(ScenarioRules, WarnsOfPatchesAndDipsOutOfReach) {
+  // The front of the wagon starts at 5.25 m and is at most 100 m further after 6 s of 60 km/h; its rear at -5.25 m.
+  Put("scenarios/a.yaml",
+      "base: dip\ntrack:\n  base: dip\n  friction_patches:\n"
+      "  - {from_m: 105, to_m: 200, friction_coefficient: 0.1}\n"
+      "  - {from_m: 106, to_m: 200, friction_coefficient: 0.1}\n"
+      "  - {from_m: -30, to_m: -6, friction_coefficient: 0.1}\n");
+  EXPECT_EQ(WarningsOf("a"),
+            "scenarios/a.yaml:6: track.friction_patches[1] on [106, 200] m is reached by no wheel: they are "
+            "on [-5.25, "
+            "105.25] m at most in this run (2 entries of track.friction_patches are not)");
+  // Downhill it comes further: 9.81 m/s2 x 2 % x (6 s)^2 / 2 = 3.5 m.
+  EXPECT_EQ(
+      WarningsOf("a", {"track.grades=[{from_m: 0, grade_percent: -2}]", "track.friction_patches[2].to_m=0"}),
+      "");
+  EXPECT_EQ(WarningsOf("dip", {"duration_s=2"}),
+            "tracks/dip.yaml:4: track.dips[0] on [40, 50] m is reached by no wheel: they are on [-5.25, "
+            "38.583] m at "
+            "most in this run");
+}
+
+// ---- models of single groups -----------------------------------------------------------------------------------
+
+TEST_F(ScenarioRules, AGroupHasItsOwnModelOrTheScenarios) {
+  const ScenarioParams mixed =
+      config::LoadScenario(Scenario("emergency"), {"model=ltd-no-inertia", "train.consist[0].model=2d",
+                                                   "train.consist[2].model=ltd", "detail_vehicles=[1, 2]"})
+          .params;
+  const std::vector<VehicleModel> models = mixed.VehicleModels();
+  ASSERT_EQ(models.size(), 242u);
+  EXPECT_EQ(models[0], VehicleModel::kTwoD);
+  EXPECT_EQ(models[120], VehicleModel::kLtdNoInertia);
+  EXPECT_EQ(models[121], VehicleModel::kLtd);
+  EXPECT_EQ(models[241], VehicleModel::kLtdNoInertia);
+  EXPECT_EQ(mixed.ModelNames(), "2d, ltd, ltd-no-inertia");
+  EXPECT_EQ(mixed.DetailedVehicles(), std::vector<int>({0}));  // the other one has no details
+  // Its text says the same.
+  strict_config::ErrorList errors;
+  const auto again = strict_config::LoadText<ScenarioParams>(strict_config::Write(mixed), "text", errors);
+  EXPECT_TRUE(errors.empty());
+  EXPECT_EQ(again.VehicleModels(), models);
+}
+
+TEST_F(ScenarioRules, MixedModelsAreNamedInErrorsAndWarnings) {
+  const std::string file = Scenario("emergency");
+  EXPECT_NE(
+      ErrorsOf(file, {"train.consist[1].model=ldt"})
+          .find("train.consist[1].model must be one of 2d, ltd or ltd-no-inertia, got ldt"),
+      std::string::npos);
+  EXPECT_NE(ErrorsOf(file, {"model=ltd", "integrator=newmark", "train.consist[1].model=2d"})
+                .find("must be leapfrog for the 2d model"),
+            std::string::npos);
+  EXPECT_NE(WarningsOf("emergency", {"train.consist[0].model=ltd", "detail_vehicles=[1]"})
+                .find("detail_vehicles[0] is 1, a vehicle of the ltd model, which has no details"),
+            std::string::npos);
+}
+
+TEST_F(ScenarioRules, ADipMayLieUnderVehiclesThatHaveNoContact) {
+  // Vehicle 1 alone stands on [-5, 5] m or so; the dip lies under it.
+  const std::string dip = "track.dips=[{from_m: -1, depth_m: 0.01, length_m: 2}]";
+  EXPECT_NE(ErrorsOf(Scenario("emergency"), {dip}).find("must not lie under the train at its start"),
+            std::string::npos);
+  EXPECT_EQ(ErrorsOf(Scenario("emergency"), {dip, "train.consist[0].model=ltd"}), "");
+  EXPECT_NE(ErrorsOf(Scenario("emergency"), {dip, "train.consist[1].model=ltd"})
+                .find("must not lie under vehicles of the 2d model at their start"),
+            std::string::npos);
 }
 
 }  // namespace

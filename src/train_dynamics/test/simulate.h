@@ -47,7 +47,7 @@ inline Outcome Simulate(const std::string& scenario, const std::vector<std::stri
     double sum = 0.0;
     for (const double v : record.vehicles.speed_mps) sum += v;
     outcome.mean_speed_kmh = 3.6 * sum / loaded.consist.vehicles();
-    if (record.ledger == nullptr) return;
+    if (!record.ledger) return;
     outcome.ledger = *record.ledger;
     if (record.exchange == 0) {
       initial_j = record.ledger->Stored();

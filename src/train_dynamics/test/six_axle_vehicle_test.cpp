@@ -13,7 +13,7 @@
 
 #include "paper_vehicle.h"
 #include "ride.h"
-#include "train_dynamics/config/error_list.h"
+#include "strict_config/error_list.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/in_process_train.h"
@@ -115,7 +115,7 @@ TEST(SixAxleStatics, EveryWheelsetCarriesASixth) {
   for (const VehicleParams& p : {WithWedges(), WithDampers()}) {
     const SixAxleVehicle w(p);
     const auto s = StaticEquilibrium(w, 0.0, 20.0);
-    const auto rail = ContactForces(w, TrackParams(), s);
+    const auto rail = ContactForces(w, Track(), s);
     for (int i = 0; i < kSixWheelsets; ++i) EXPECT_NEAR(rail.normal[i], w.weight_n / 6.0, 1e-9 * w.weight_n);
   }
   EXPECT_NEAR(SixAxleVehicle(WithDampers()).weight_n,
@@ -130,7 +130,7 @@ TEST(SixAxleStatics, AMiddleWheelsetOffTheCentreTakesItsShare) {
   const SixAxleVehicle w(p);
   const double d = 1.85, m = 0.3, wheelset_n = 9.81 * 1731.8;
   const double load = 0.5 * w.weight_n - 3.0 * wheelset_n;
-  const auto rail = ContactForces(w, TrackParams(), StaticEquilibrium(w, 0.0, 0.0));
+  const auto rail = ContactForces(w, Track(), StaticEquilibrium(w, 0.0, 0.0));
   const double front = rail.normal[0] - wheelset_n, middle = rail.normal[1] - wheelset_n,
                rear = rail.normal[2] - wheelset_n;
   EXPECT_NEAR(front + middle + rear, load, 1e-9 * w.weight_n);
@@ -228,6 +228,20 @@ TEST(SixAxleSymmetry, RunningBackwardsIsTheMirrorImage) {
   EXPECT_LT(MirrorError<3>(p), 1e-9);  // rounding of 300 m over 50000 steps
 }
 
+LoadPlaces Loads(const std::vector<double>& coupler, const std::vector<double>& pressure) {
+  LoadPlaces places;
+  places.front_coupler_n = coupler.data();
+  places.rear_coupler_n = coupler.data() + 1;
+  places.cylinder_pressure_pa = pressure.data();
+  return places;
+}
+ReplyPlaces Reply(std::vector<double>& x, std::vector<double>& v) {
+  ReplyPlaces places;
+  places.head_displacement_m = x.data();
+  places.head_velocity_mps = v.data();
+  return places;
+}
+
 class SixAxleKernels : public testing::TestWithParam<LaneKernels> {};
 
 TEST_P(SixAxleKernels, MoveEachVehicleAsTheScalarStepDoes) {
@@ -249,8 +263,7 @@ TEST_P(SixAxleKernels, MoveEachVehicleAsTheScalarStepDoes) {
         for (int step = 0; step < 5; ++step)
           StepWagon<double, 3>(vehicle, {}, loads, 1e-3, states[i], nullptr);
       }
-      ASSERT_TRUE(batch.Advance(
-          {}, 1e-3, 5, {coupler.data(), coupler.data() + 1, pressure.data(), x.data(), v.data()}, false));
+      ASSERT_TRUE(batch.Advance({}, 1e-3, 5, Loads(coupler, pressure), Reply(x, v), false));
     }
     std::vector<std::uint64_t> digests(kVehicles);
     batch.Digests(digests.data());
@@ -346,15 +359,14 @@ TEST_F(SixAxleTrain, TakesAStateBackInBlocksOfAnyCut) {
   const auto whole = MakeVehicleBlock(loaded.params, loaded.consist, 0, kVehicles);
   ExchangeReply reply(kVehicles, {});
   whole->Advance(request, 0, reply);
-  const int numbers = whole->NumbersPerVehicle();
-  std::vector<double> state(kVehicles * numbers);
+  std::vector<StateRow> state(kVehicles);
   whole->Save(state.data());
+  EXPECT_GT(state[0].size(), state[1].size());  // two wheelsets more
   whole->Advance(request, 0, reply);
   ExchangeReply in_parts(kVehicles, {});
   for (const auto& [first, count] : {std::pair{0, 1}, {1, 2}, {3, 1}}) {
     const auto part = MakeVehicleBlock(loaded.params, loaded.consist, first, count);
-    ASSERT_EQ(part->NumbersPerVehicle(), numbers);  // a train's snapshot is cut by vehicles
-    part->Restore(&state[first * numbers]);
+    part->Restore(&state[first]);
     part->Advance(request, first, in_parts);
   }
   EXPECT_EQ(reply.state_digest, in_parts.state_digest);
@@ -364,7 +376,7 @@ TEST_F(SixAxleTrain, FullDetailOfASixAxleVehicleIsRefused) {
   try {
     Load(MixedTrain("detail_vehicles: [2, 1]\n"));
     FAIL() << "accepted";
-  } catch (const config::Error& error) {
+  } catch (const strict_config::Error& error) {
     EXPECT_NE(std::string(error.what())
                   .find("mixed.yaml:17: detail_vehicles[1] must be a vehicle with wheelsets_per_bogie "
                         "2: full detail is not recorded of others"),

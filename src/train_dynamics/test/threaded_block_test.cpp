@@ -39,12 +39,35 @@ TEST(UsableCores, AreThoseThatTheSystemAllows) {
   ASSERT_EQ(0, sched_setaffinity(0, sizeof before, &before));
 }
 
+/// Threads worth having for a train of these groups: (model, count).
+int ThreadsFor(const std::vector<std::pair<VehicleModel, int>>& groups, int threads) {
+  ScenarioParams scenario;
+  int count = 0;
+  for (const auto& [model, vehicles] : groups) {
+    ConsistGroupParams group;
+    group.model = model;
+    group.count = vehicles;
+    scenario.train.consist.push_back(group);
+    count += vehicles;
+  }
+  return UsefulThreads(scenario, 0, count, threads);
+}
+
 TEST(UsefulThreads, AreNoMoreThanTheVehiclesAreWorth) {
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 2, 8), 1);  // a barrier costs more
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 16, 8), 2);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kTwoD, 242, 2), 2);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 242, 8), 1);
-  EXPECT_EQ(UsefulThreads(VehicleModel::kLtd, 5000, 8), 5);
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kTwoD, 2}}, 8), 1);  // a barrier costs more
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kTwoD, 16}}, 8), 2);
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kTwoD, 242}}, 2), 2);
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kLtd, 242}}, 8), 1);
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kLtd, 5000}}, 8), 5);
+  EXPECT_EQ(ThreadsFor({{VehicleModel::kLtd, 500}, {VehicleModel::kTwoD, 16}}, 8), 2);
+}
+
+TEST(Threads, AnyNumberGivesTheSameBitsOfMixedModels) {
+  const std::vector<std::string> overrides = {"duration_s=3.5", "train.consist[0].model=ltd"};
+  const Outcome one = Simulate("emergency", overrides, 1);
+  for (const int threads : {2, 3, 242})
+    EXPECT_EQ(Simulate("emergency", overrides, threads).digest, one.digest);
+  EXPECT_NE(Simulate("emergency", {"duration_s=3.5"}, 1).digest, one.digest);
 }
 
 TEST(Threads, AnyNumberGivesTheSameBits) {

@@ -22,6 +22,7 @@ struct Arrays {
   std::vector<double> pressure_pa = std::vector<double>(kVehicles);
   std::vector<double> displacement_m = std::vector<double>(kVehicles + 1, -1.0);
   std::vector<double> velocity_mps = std::vector<double>(kVehicles + 1, -1.0);
+  std::vector<double> traction_n, dynamic_brake_n;  ///< empty: not used
 
   void Set(int exchange) {
     for (int i = 0; i <= kVehicles; ++i) coupler_n[i] = 1e5 * std::sin(0.1 * exchange + i);
@@ -32,11 +33,24 @@ struct Arrays {
     loads.front_coupler_n = coupler_n[i];
     loads.rear_coupler_n = coupler_n[i + 1];
     loads.cylinder_pressure_pa = pressure_pa[i];
+    if (!traction_n.empty()) loads.traction_n = traction_n[i];
+    if (!dynamic_brake_n.empty()) loads.dynamic_brake_n = dynamic_brake_n[i];
     return loads;
   }
-  VehicleArrays Pointers() {
-    return {coupler_n.data(), coupler_n.data() + 1, pressure_pa.data(), displacement_m.data(),
-            velocity_mps.data()};
+  LoadPlaces Loads() const {
+    LoadPlaces places;
+    places.front_coupler_n = coupler_n.data();
+    places.rear_coupler_n = coupler_n.data() + 1;
+    places.cylinder_pressure_pa = pressure_pa.data();
+    if (!traction_n.empty()) places.traction_n = traction_n.data();
+    if (!dynamic_brake_n.empty()) places.dynamic_brake_n = dynamic_brake_n.data();
+    return places;
+  }
+  ReplyPlaces Reply() {
+    ReplyPlaces places;
+    places.head_displacement_m = displacement_m.data();
+    places.head_velocity_mps = velocity_mps.data();
+    return places;
   }
 };
 
@@ -44,20 +58,28 @@ struct Arrays {
 template <class Vehicle, class State, class Output>
 void ExpectRecords(const VehicleBatch<Vehicle>& batch, const std::vector<State>& states,
                    const std::vector<Output>& outputs) {
-  constexpr int kQuantities = 7;
-  std::vector<double> a[kQuantities];
-  for (std::vector<double>& quantity : a) quantity.assign(kVehicles + 1, -1.0);
-  batch.Record({a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(), a[6].data()});
+  ReplyArrays reply;
+  RecordArrays record;
+  ResizeReply(kVehicles + 1, reply);
+  ResizeRecord(kVehicles + 1, record);
+  const auto mark = [](const RecordInfo&, std::vector<double>& array) { array.assign(array.size(), -1.0); };
+  ForEachReplyField(mark, reply);
+  ForEachRecordField(mark, record);
+  batch.Record(PlacesOf(reply, 0), PlacesOf(record, 0));
   for (int i = 0; i < kVehicles; ++i) {
+    EXPECT_EQ(CouplerHeadDisplacement(batch.vehicle(), states[i]), reply.head_displacement_m[i]);
+    EXPECT_EQ(CouplerHeadVelocity(batch.vehicle(), states[i]), reply.head_velocity_mps[i]);
     const VehicleRecord<double> one = RecordOf(batch.vehicle(), states[i], outputs[i]);
-    const double expected[kQuantities] = {
-        one.head_displacement_m, one.head_velocity_mps, one.position_m, one.speed_mps,
-        one.shoe_force_n,        one.wheel_force_n,     one.creepage};
-    for (int q = 0; q < kQuantities; ++q) {
-      EXPECT_EQ(ToBits(expected[q]), ToBits(a[q][i])) << "vehicle " << i << ", quantity " << q;
-    }
+    const auto expect = [i](const RecordInfo& field, double expected, const std::vector<double>& array) {
+      EXPECT_EQ(ToBits(expected), ToBits(array[i])) << "vehicle " << i << ", " << field.name;
+    };
+    ForEachRecordField(expect, one, record);
   }
-  for (const std::vector<double>& quantity : a) EXPECT_EQ(-1.0, quantity[kVehicles]);
+  const auto expect_mark = [](const RecordInfo& field, const std::vector<double>& array) {
+    EXPECT_EQ(-1.0, array[kVehicles]) << field.name;
+  };
+  ForEachReplyField(expect_mark, reply);
+  ForEachRecordField(expect_mark, record);
 }
 
 class LaneKernelsTest : public testing::TestWithParam<LaneKernels> {
@@ -85,7 +107,7 @@ TEST_P(LaneKernelsTest, MoveEachWagonAsTheScalarStepDoes) {
       for (int step = 0; step < 5; ++step)
         StepWagon(wagon, track, arrays.Of(i), 1e-3, states[i], &outputs[i]);
     }
-    ASSERT_TRUE(batch.Advance(track, 1e-3, 5, arrays.Pointers(), with_output));
+    ASSERT_TRUE(batch.Advance(track, 1e-3, 5, arrays.Loads(), arrays.Reply(), with_output));
     for (int i = 0; i < kVehicles; ++i) {
       ASSERT_EQ(CouplerHead(wagon, states[i].position), arrays.displacement_m[i]) << "wagon " << i;
       ASSERT_EQ(CouplerHead(wagon, states[i].velocity), arrays.velocity_mps[i]) << "wagon " << i;
@@ -119,7 +141,7 @@ TEST_P(LaneKernelsTest, RecordWhatTheScalarLawDoesWhileWheelsRollAndSlide) {
       for (int i = 0; i < kVehicles; ++i) {
         for (int step = 0; step < 5; ++step) StepWagon(wagon, {}, arrays.Of(i), 1e-3, states[i], &outputs[i]);
       }
-      ASSERT_TRUE(batch.Advance({}, 1e-3, 5, arrays.Pointers(), true));
+      ASSERT_TRUE(batch.Advance({}, 1e-3, 5, arrays.Loads(), arrays.Reply(), true));
     }
     for (const WagonState<double>& state : states) {
       ASSERT_GT(state.velocity.x[kCarbody], 1.0);
@@ -127,6 +149,38 @@ TEST_P(LaneKernelsTest, RecordWhatTheScalarLawDoesWhileWheelsRollAndSlide) {
     }
     ExpectRecords(batch, states, outputs);
     if (HasFailure()) return;
+  }
+}
+
+TEST_P(LaneKernelsTest, LoadsThatFewTrainsHaveActWhereTheyAreGiven) {
+  const Wagon wagon(OreWagon());
+  const LtdVehicle ltd(OreWagon(), true);
+  std::vector<WagonState<double>> wagons = Wagons(wagon);
+  std::vector<LtdState<double>> ltds(kVehicles);
+  for (int i = 0; i < kVehicles; ++i) ltds[i].v_mps = 22.0 - i;
+  WagonBatch wagon_batch(wagon, GetParam(), wagons);
+  LtdBatch ltd_batch(ltd, GetParam(), ltds);
+  Arrays arrays;
+  for (int i = 0; i < kVehicles; ++i) {
+    arrays.traction_n.push_back(1e4 * i);
+    arrays.dynamic_brake_n.push_back(3e3 * (kVehicles - i));
+  }
+  for (int exchange = 0; exchange < 50; ++exchange) {
+    for (int i = 0; i < kVehicles; ++i) {
+      StepWagon(wagon, {}, arrays.Of(i), 1e-3, wagons[i], static_cast<WagonOutput<double>*>(nullptr));
+      StepLtd(ltd, {}, arrays.Of(i), 1e-3, ltds[i]);
+    }
+    ASSERT_TRUE(wagon_batch.Advance({}, 1e-3, 1, arrays.Loads(), arrays.Reply(), false));
+    ASSERT_TRUE(ltd_batch.Advance({}, 1e-3, 1, arrays.Loads(), arrays.Reply(), false));
+  }
+  for (int i = 0; i < kVehicles; ++i) {
+    const WagonState<double> s = wagon_batch.StateOf(i);
+    EXPECT_EQ(wagons[i].velocity.x, s.velocity.x) << i;
+    EXPECT_EQ(wagons[i].work.traction, s.work.traction) << i;
+    EXPECT_EQ(ltds[i].v_mps, ltd_batch.StateOf(i).v_mps) << i;
+    EXPECT_EQ(ltds[i].work.traction, ltd_batch.StateOf(i).work.traction) << i;
+    EXPECT_EQ(i > 0, s.work.traction > 0.0) << i;
+    EXPECT_GT(s.work.dissipated[kDynamicBrake], 0.0) << i;
   }
 }
 
@@ -149,7 +203,7 @@ TEST_P(LaneKernelsTest, MoveEachLtdVehicleAsTheScalarStepDoes) {
         for (int step = 0; step < 3; ++step)
           StepLtd(vehicle, hills, arrays.Of(i), 1e-3, states[i], &outputs[i]);
       }
-      ASSERT_TRUE(batch.Advance(hills, 1e-3, 3, arrays.Pointers(), true));
+      ASSERT_TRUE(batch.Advance(hills, 1e-3, 3, arrays.Loads(), arrays.Reply(), true));
       for (int i = 0; i < kVehicles; ++i) {
         ASSERT_EQ(states[i].x_m, arrays.displacement_m[i]);
         ASSERT_EQ(states[i].v_mps, arrays.velocity_mps[i]);
@@ -169,8 +223,8 @@ TEST_P(LaneKernelsTest, ReportABatchWithAWagonThatIsNotSound) {
     states[broken].velocity.z[kFrontBolster] = std::numeric_limits<double>::quiet_NaN();
     WagonBatch batch(wagon, GetParam(), states);
     Arrays arrays;
-    EXPECT_FALSE(batch.Advance({}, 1e-3, 1, arrays.Pointers(), false)) << "wagon " << broken;
-    for (int i = 0; i < kVehicles; ++i) EXPECT_EQ(i != broken, IsSound(batch.StateOf(i)));
+    EXPECT_FALSE(batch.Advance({}, 1e-3, 1, arrays.Loads(), arrays.Reply(), false)) << "wagon " << broken;
+    for (int i = 0; i < kVehicles; ++i) EXPECT_EQ(i != broken, IsSound(batch.vehicle(), Track(), batch.StateOf(i)));
   }
 }
 
@@ -183,8 +237,8 @@ TEST_P(LaneKernelsTest, TakeAStateThatIsSetAsOneTheyBeganWith) {
   Arrays arrays, others;
   arrays.Set(7);
   others.Set(7);
-  ASSERT_TRUE(began.Advance({}, 1e-3, 20, arrays.Pointers(), false));
-  ASSERT_TRUE(set.Advance({}, 1e-3, 20, others.Pointers(), false));
+  ASSERT_TRUE(began.Advance({}, 1e-3, 20, arrays.Loads(), arrays.Reply(), false));
+  ASSERT_TRUE(set.Advance({}, 1e-3, 20, others.Loads(), others.Reply(), false));
   EXPECT_EQ(arrays.displacement_m, others.displacement_m);
 }
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "train_dynamics/config/reader.h"
+#include "strict_config/reader.h"
 #include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/train/threaded_block.h"
@@ -37,8 +37,8 @@ std::string Hex(std::uint64_t value) {
 }
 
 ScenarioParams Read(const std::string& scenario) {
-  train_dynamics::config::ErrorList errors;
-  ScenarioParams params = train_dynamics::config::LoadText<ScenarioParams>(scenario, "scenario", errors);
+  strict_config::ErrorList errors;
+  ScenarioParams params = strict_config::LoadText<ScenarioParams>(scenario, "scenario", errors);
   if (!errors.empty()) throw Refusal("the scenario cannot be used:\n" + errors.Text(5));
   return params;
 }
@@ -52,10 +52,20 @@ std::vector<int> DetailedVehicles(const ScenarioParams& scenario, const train_dy
   return detailed;
 }
 
+/// What is replied to every exchange, from the arrays of the vehicles to those of a message.
+template <class Response>
+void CopyReply(const train_dynamics::ExchangeReply& state, Response& response) {
+  train_dynamics::ForEachReplyField(
+      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; }, state, response);
+}
+
 /// What is wrong with an array of a request; empty: nothing.
-std::string Check(const char* name, const std::vector<double>& values, std::size_t expected) {
-  if (values.size() != expected) {
-    return std::string(name) + " has " + Text(values.size()) + " values, expected " + Text(expected);
+std::string Check(const char* name, const std::vector<double>& values, std::size_t expected,
+                  train_dynamics::Given given) {
+  const bool may_be_empty = given == train_dynamics::Given::kWhereUsed;
+  if (values.size() != expected && !(may_be_empty && values.empty())) {
+    return std::string(name) + " has " + Text(values.size()) + " values, expected " + Text(expected) +
+           (may_be_empty ? " or none" : "");
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) continue;
@@ -75,7 +85,7 @@ struct WagonServer::Run {
         rank{train_dynamics::VehicleName(first, consist.vehicles()), first, count},
         vehicles_in_train(consist.vehicles()),
         steps(static_cast<std::uint32_t>(params.StepsPerExchange())),
-        vehicles(params, consist, first, count, train_dynamics::UsefulThreads(params.model, count, threads)),
+        vehicles(params, consist, first, count, train_dynamics::UsefulThreads(params, first, count, threads)),
         state(count, DetailedVehicles(params, rank)) {}
 
   bool IsRepeated(const StepRequest& request) const {
@@ -84,8 +94,7 @@ struct WagonServer::Run {
   /// Whether a request would move the vehicles as the last one has.
   bool HasLastInputs(const StepRequest& request) const {
     return request.dt_s == loads.dt_s && request.steps == steps &&
-           request.coupler_force_n == loads.coupler_force_n &&
-           request.cylinder_pressure_pa == loads.cylinder_pressure_pa;
+           train_dynamics::AreSameLoads(request, loads);
   }
   /// Brings the vehicles to a snapshot. @throws SnapshotError
   void Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes);
@@ -109,16 +118,16 @@ struct WagonServer::Run {
 void WagonServer::Run::Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes) {
   using train_dynamics::SnapshotError;
   const train_dynamics::BlockSnapshot snapshot = train_dynamics::DecodeBlockSnapshot(bytes);
-  const auto first = static_cast<std::uint64_t>(rank.first), count = static_cast<std::uint64_t>(rank.count);
-  if (snapshot.first != first || snapshot.count != count) {
-    throw SnapshotError("is of " + Text(snapshot.count) + " vehicle(s) from " + Text(snapshot.first + 1) +
+  const std::size_t count = snapshot.states.size();
+  if (snapshot.first != static_cast<std::uint64_t>(rank.first) ||
+      count != static_cast<std::size_t>(rank.count)) {
+    throw SnapshotError("is of " + Text(count) + " vehicle(s) from " + Text(snapshot.first + 1) +
                         " on, not of " + train_dynamics::VehiclesText(rank));
   }
   if (snapshot.exchange != exchange) {
     throw SnapshotError("is of exchange " + Text(snapshot.exchange) + ", not of exchange " + Text(exchange));
   }
-  train_dynamics::CheckSnapshotSize(snapshot.state, vehicles, rank.count);
-  vehicles.Restore(snapshot.state.data());
+  vehicles.Restore(snapshot.states.data());
   next_exchange = exchange;
 }
 
@@ -126,18 +135,14 @@ std::vector<std::uint8_t> WagonServer::Run::Snapshot() const {
   train_dynamics::BlockSnapshot snapshot;
   snapshot.exchange = next_exchange;
   snapshot.first = static_cast<std::uint64_t>(rank.first);
-  snapshot.count = static_cast<std::uint64_t>(rank.count);
-  snapshot.state.resize(snapshot.count * vehicles.NumbersPerVehicle());
-  vehicles.Save(snapshot.state.data());
+  snapshot.states.resize(rank.count);
+  vehicles.Save(snapshot.states.data());
   return train_dynamics::Encode(snapshot);
 }
 
 void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
-  record.position_m = state.position_m;
-  record.speed_mps = state.speed_mps;
-  record.shoe_force_n = state.shoe_force_n;
-  record.wheel_force_n = state.wheel_force_n;
-  record.creepage = state.creepage;
+  train_dynamics::ForEachRecordField(
+      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; }, state, record);
   record.state_digest = state.state_digest;
   record.details.resize(state.details.size());
   for (std::size_t i = 0; i < state.details.size(); ++i) {
@@ -155,13 +160,9 @@ void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
     message.cylinder_pressure_pa = static_cast<Load>(loads.cylinder_pressure_pa[at]);
   }
   if (!with_energy) return;
-  for (const train_dynamics::VehicleEnergy& energy : state.energy) {
-    record.kinetic_j.push_back(energy.kinetic);
-    record.potential_j.push_back(energy.potential);
-    record.gravity_work_j.push_back(energy.work.gravity);
-    record.traction_work_j.push_back(energy.work.traction);
-    record.dissipated_j.insert(record.dissipated_j.end(), energy.work.dissipated.begin(),
-                               energy.work.dissipated.end());
+  train_dynamics::ResizeEnergies(state.energy.size(), record);
+  for (std::size_t i = 0; i < state.energy.size(); ++i) {
+    train_dynamics::PutEnergy(state.energy[i], i, record);
   }
 }
 
@@ -178,8 +179,7 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
   try {
     std::unique_ptr<Run> run = Begin(request, driven, response.scenario_digest);
     run->vehicles.Report(0, true, run->state);
-    response.head_displacement_m = run->state.head_displacement_m;
-    response.head_velocity_mps = run->state.head_velocity_mps;
+    CopyReply(run->state, response);
     run->Fill(true, response.record);
     response.threads = static_cast<std::uint32_t>(run->vehicles.threads());
     response.ok = true;
@@ -248,16 +248,14 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   run.loads.steps = static_cast<int>(request.steps);
   run.loads.record = request.record;
   run.loads.ledger = request.ledger;
-  run.loads.coupler_force_n = request.coupler_force_n;
-  run.loads.cylinder_pressure_pa = request.cylinder_pressure_pa;
+  train_dynamics::CopyLoads(request, 0, run.rank.count, run.loads);
   const bool sound = run.vehicles.Advance(run.loads, 0, run.state);
   ++run.next_exchange;
   run.has_replied = true;
 
   reply.ok = true;
   reply.exchange = request.exchange;
-  reply.head_displacement_m = run.state.head_displacement_m;
-  reply.head_velocity_mps = run.state.head_velocity_mps;
+  CopyReply(run.state, reply);
   const train_dynamics::VehicleFault fault =
       sound ? train_dynamics::VehicleFault() : run.vehicles.FindFault();
   reply.fault_vehicle = static_cast<std::uint32_t>(fault.vehicle + 1);
@@ -277,8 +275,7 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
   }
   if (run.IsRepeated(request)) {
     if (run.HasLastInputs(request)) return "";
-    return "exchange " + Text(request.exchange) +
-           " has been computed already, with other forces or pressures";
+    return "exchange " + Text(request.exchange) + " has been computed already, with other loads";
   }
   if (request.exchange != run.next_exchange) {
     return "exchange " + Text(request.exchange) +
@@ -292,9 +289,14 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
            " s in the scenario";
   }
   const auto count = static_cast<std::size_t>(run.rank.count);
-  const std::string wrong_force = Check("coupler_force_n", request.coupler_force_n, count + 1);
-  return !wrong_force.empty() ? wrong_force
-                              : Check("cylinder_pressure_pa", request.cylinder_pressure_pa, count);
+  std::string wrong =
+      Check("coupler_force_n", request.coupler_force_n, count + 1, train_dynamics::Given::kAlways);
+  train_dynamics::ForEachLoad(
+      [&](const train_dynamics::LoadInfo& load, const auto& values) {
+        if (wrong.empty()) wrong = Check(load.name, values, count, load.given);
+      },
+      request);
+  return wrong;
 }
 
 }  // namespace wagon_node

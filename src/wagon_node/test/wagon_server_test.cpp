@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "strict_config/writer.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 
 namespace wagon_node {
@@ -38,7 +38,7 @@ ConfigureRequest ConfigureFor(const LoadedScenario& scenario) {
   request.run_id = kRun;
   request.first_vehicle = kFirst + 1;
   request.vehicle_count = kCount;
-  request.scenario = train_dynamics::config::Write(scenario.params);
+  request.scenario = strict_config::Write(scenario.params);
   request.scenario_digest = train_dynamics::TextDigest(request.scenario);
   return request;
 }
@@ -113,7 +113,8 @@ class Mirror : public train_dynamics::Transport {
     ExpectEnergies(response.record, reply);
   }
 
-  void Resume(std::uint64_t, const std::vector<double>&, train_dynamics::ExchangeReply&) override {
+  void Resume(std::uint64_t, const std::vector<train_dynamics::StateRow>&,
+              train_dynamics::ExchangeReply&) override {
     FAIL() << "nobody asks for it here";
   }
 
@@ -149,19 +150,22 @@ class Mirror : public train_dynamics::Transport {
   }
 
   void ExpectRecord(const train_brake_msgs::RankRecord& record, const train_dynamics::ExchangeReply& reply) {
-    ExpectSlice(record.position_m, reply.position_m);
-    ExpectSlice(record.speed_mps, reply.speed_mps);
-    ExpectSlice(record.shoe_force_n, reply.shoe_force_n);
-    ExpectSlice(record.wheel_force_n, reply.wheel_force_n);
-    ExpectSlice(record.creepage, reply.creepage);
+    train_dynamics::ForEachRecordField(
+        [](const train_dynamics::RecordInfo& field, const auto& part, const auto& whole) {
+          SCOPED_TRACE(field.name);
+          ExpectSlice(part, whole);
+        },
+        record, reply);
     ExpectSlice(record.state_digest, reply.state_digest);
     // Of the vehicles 1, 4 and 6 in full detail, 4 is in the rank.
-    const bool has_details = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
+    const bool has_details = scenario_.params.VehicleModels()[3] == train_dynamics::VehicleModel::kTwoD;
     ASSERT_EQ(record.details.size(), has_details ? 1u : 0u);
     if (!has_details) return;
     EXPECT_EQ(record.details[0].vehicle, 4u);
-    const train_dynamics::WagonDetail& detail = reply.details[1];
-    ASSERT_EQ(detail.vehicle, 3);
+    const auto found = std::find_if(reply.details.begin(), reply.details.end(),
+                                    [](const train_dynamics::WagonDetail& one) { return one.vehicle == 3; });
+    ASSERT_NE(found, reply.details.end());
+    const train_dynamics::WagonDetail& detail = *found;
     EXPECT_TRUE(std::equal(detail.velocity.pitch.begin(), detail.velocity.pitch.end(),
                            record.details[0].body_pitch_radps.begin()));
   }
@@ -171,10 +175,10 @@ class Mirror : public train_dynamics::Transport {
     ASSERT_EQ(record.dissipated_j.size(), std::size_t{kCount} * train_dynamics::kDissipations);
     for (int i = 0; i < kCount; ++i) {
       const train_dynamics::VehicleEnergy& energy = reply.energy[kFirst + i];
-      EXPECT_EQ(record.kinetic_j[i], energy.kinetic);
-      EXPECT_EQ(record.potential_j[i], energy.potential);
-      EXPECT_EQ(record.gravity_work_j[i], energy.work.gravity);
-      EXPECT_TRUE(std::equal(energy.work.dissipated.begin(), energy.work.dissipated.end(),
+      EXPECT_EQ(record.kinetic_j[i], energy.kinetic_j);
+      EXPECT_EQ(record.potential_j[i], energy.potential_j);
+      EXPECT_EQ(record.gravity_work_j[i], energy.gravity_work_j);
+      EXPECT_TRUE(std::equal(energy.dissipated_j.begin(), energy.dissipated_j.end(),
                              record.dissipated_j.begin() + i * train_dynamics::kDissipations));
     }
   }
@@ -185,10 +189,15 @@ class Mirror : public train_dynamics::Transport {
 };
 
 TEST(WagonServer, ComputesTheBitsOfTheTrainInOneProcess) {
-  for (const char* model : {"2d", "ltd"}) {
+  const std::vector<std::vector<std::string>> models = {
+      {"model=2d"},
+      {"model=ltd"},
+      {"train.consist[1].model=ltd", "train.consist[2].model=ltd-no-inertia"},
+      {"model=ltd", "train.consist[1].model=2d"}};
+  for (const std::vector<std::string>& overrides : models) {
     for (const int threads : {1, 2}) {
-      SCOPED_TRACE(std::string(model) + ", threads: " + std::to_string(threads));
-      const LoadedScenario scenario = Load({std::string("model=") + model});
+      SCOPED_TRACE(overrides.back() + ", threads: " + std::to_string(threads));
+      const LoadedScenario scenario = Load(overrides);
       Mirror mirror(scenario, threads);
       train_dynamics::TrainMaster master(scenario.params, scenario.consist, mirror, scenario.pressures);
       master.Start();
@@ -251,7 +260,7 @@ TEST_F(WagonServerTest, RefusesASnapshotThatDoesNotFit) {
   request.exchange = 1;
   const ConfigureResponse response = Configure(request, false);
   EXPECT_FALSE(response.ok);
-  EXPECT_NE(response.message.find("of this model"), std::string::npos) << response.message;
+  EXPECT_NE(response.message.find("but one of the ltd model has"), std::string::npos) << response.message;
   EXPECT_TRUE(Step(1).ok);  // none of it has touched the run
 }
 
@@ -285,7 +294,7 @@ TEST_F(WagonServerTest, RefusesARepetitionWithOtherInputs) {
   for (const auto& change : changes) {
     StepRequest other = right;
     change(other);
-    ExpectRefused(other, "exchange 1 has been computed already, with other forces or pressures");
+    ExpectRefused(other, "exchange 1 has been computed already, with other loads");
   }
   StepRequest other_flags = right;
   other_flags.record = other_flags.ledger = true;

@@ -37,10 +37,9 @@ double SizeOf(double share, std::vector<double> values) {
   return *place;
 }
 
-std::string ModelText(train_dynamics::VehicleModel model) {
-  return model == train_dynamics::VehicleModel::kTwoD
-             ? "2D model"
-             : std::string("model ") + train_dynamics::ModelName(model);
+std::string ModelText(const train_dynamics::ScenarioParams& scenario) {
+  const std::string names = scenario.ModelNames();
+  return names == "2d" ? "2D model" : (names.find(',') == std::string::npos ? "model " : "models ") + names;
 }
 
 }  // namespace
@@ -77,14 +76,12 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
         elevation_, front + std::min(0.0, way) - window_m_, front + std::max(0.0, way), window_m_,
         layout::kTrain.width() / window_m_, TrainStrip::RoomForTrack(layout::kTrain));
   }
-  const bool has_bodies = scenario.model == train_dynamics::VehicleModel::kTwoD;
-  for (const train_dynamics::VehicleParams& vehicle : consist_.vehicle_types) {
+  for (std::size_t type = 0; type < consist_.vehicle_types.size(); ++type) {
     at_rest_.emplace_back();
-    if (has_bodies) {
-      at_rest_.back() = train_dynamics::WithBogieVehicle(vehicle, [](const auto& wagon) {
-        return CloseUp::BodiesOf(train_dynamics::StaticEquilibrium(wagon, 0.0, 0.0).position);
-      });
-    }
+    if (scenario.ModelOfGroup(type) != train_dynamics::VehicleModel::kTwoD) continue;
+    at_rest_.back() = train_dynamics::WithBogieVehicle(consist_.vehicle_types[type], [](const auto& wagon) {
+      return CloseUp::BodiesOf(train_dynamics::StaticEquilibrium(wagon, 0.0, 0.0).position);
+    });
   }
   Forget();
 }
@@ -143,10 +140,9 @@ void Board::DrawNumbers(Drawing& drawing, const Snapshot& snapshot) const {
   const Rectangle& area = layout::kHeader;
   const double upper = area.top - 1.6, lower = area.bottom + 2.2;
   drawing.Write({area.left, upper}, Align::kLeft, 1.2 * layout::kText, scenario_.name);
-  drawing.Write(
-      {area.left, upper - 3.0}, Align::kLeft, layout::kSmallText,
-      fmt::format("{} vehicle{}, {}", vehicles(), vehicles() == 1 ? "" : "s", ModelText(scenario_.model)),
-      palette::kDark);
+  drawing.Write({area.left, upper - 3.0}, Align::kLeft, layout::kSmallText,
+                fmt::format("{} vehicle{}, {}", vehicles(), vehicles() == 1 ? "" : "s", ModelText(scenario_)),
+                palette::kDark);
 
   double place = 66.0;
   const auto card = [&](const std::string& caption, const std::string& value, double width) {
@@ -278,7 +274,7 @@ void Board::DrawCloseUp(Drawing& drawing, const Snapshot& snapshot, const Select
   if (followed > 0 && !force.empty()) sight.front_force_n = force[followed - 1];
   if (followed + 1 < vehicles() && !force.empty()) sight.rear_force_n = force[followed];
   sight.color = Colors(snapshot, selection)[followed];
-  close_up.Draw(drawing, scenario_.track, sight);
+  close_up.Draw(drawing, elevation_.track(), sight);
 }
 
 void Board::DrawLegend(Drawing& drawing, const Selection& selection) const {

@@ -66,10 +66,6 @@ constexpr Phase kNever = {kInfinity, 0.0, 0.0, 0.0};
 
 }  // namespace
 
-bool ServiceApplicationParams::Ascending(const std::vector<double>& values) {
-  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
-}
-
 AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
                    const std::vector<double>& vehicle_positions_m) {
   const int n = static_cast<int>(vehicle_positions_m.size());

@@ -13,15 +13,26 @@
 #include <stdexcept>
 #include <utility>
 
+#include "strict_config/csv_table.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/brake/pressure_table.h"
-#include "train_dynamics/config/csv_table.h"
-#include "train_dynamics/config/reader.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
 
 namespace train_dynamics::config {
 namespace {
+
+using strict_config::CsvTable;
+using strict_config::Error;
+using strict_config::ErrorList;
+using strict_config::Load;
+using strict_config::LoadOptions;
+using strict_config::LoadText;
+using strict_config::ReadCsvTable;
+using strict_config::Reader;
+using strict_config::SearchRootsFromEnvironment;
+using strict_config::Write;
 
 LoadOptions OptionsFor(const std::vector<std::string>& overrides, const std::string& kind) {
   LoadOptions options;
@@ -100,12 +111,12 @@ std::string RoundedDown(double value) {
   return std::string(text, end.ptr);
 }
 
-/// The largest stable step of each kind of vehicle, none in an LTD model.
+/// The largest stable step of each kind of vehicle of the 2D model.
 std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& scenario, Reader& rules) {
   std::vector<std::pair<std::string, double>> stable_steps;
-  if (scenario.model != VehicleModel::kTwoD) return stable_steps;
   std::set<std::string> judged;
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    if (scenario.ModelOfGroup(i) != VehicleModel::kTwoD) continue;
     const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
     if (!judged.insert(Write(vehicle)).second) continue;
     const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";

@@ -14,11 +14,11 @@ EnergyLedger MakeEnergyLedger(double time_s, const std::vector<VehicleEnergy>& v
   ledger.time_s = time_s;
   for (const char* name : kDissipationNames) ledger.dissipated_j.emplace_back(name, 0.0);
   for (const VehicleEnergy& vehicle : vehicles) {
-    ledger.kinetic_j += vehicle.kinetic;
-    ledger.potential_j += vehicle.potential;
-    ledger.gravity_work_j += vehicle.work.gravity;
-    ledger.traction_work_j += vehicle.work.traction;
-    for (int i = 0; i < kDissipations; ++i) ledger.dissipated_j[i].second += vehicle.work.dissipated[i];
+    ledger.kinetic_j += vehicle.kinetic_j;
+    ledger.potential_j += vehicle.potential_j;
+    ledger.gravity_work_j += vehicle.gravity_work_j;
+    ledger.traction_work_j += vehicle.traction_work_j;
+    for (int i = 0; i < kDissipations; ++i) ledger.dissipated_j[i].second += vehicle.dissipated_j[i];
   }
   ledger.potential_j += connections.potential;
   ledger.dissipated_j.emplace_back("draft_gears", connections.draft_gears);

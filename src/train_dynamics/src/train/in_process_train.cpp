@@ -4,9 +4,9 @@ namespace train_dynamics {
 
 void InProcessTransport::Start(ExchangeReply& reply) { vehicles_.Report(0, true, reply); }
 
-void InProcessTransport::Resume(std::uint64_t /*exchange*/, const std::vector<double>& snapshot,
+void InProcessTransport::Resume(std::uint64_t /*exchange*/, const std::vector<StateRow>& snapshot,
                                 ExchangeReply& reply) {
-  CheckSnapshotSize(snapshot, vehicles_, count_);
+  CheckRows(snapshot, count_);
   vehicles_.Restore(snapshot.data());
   vehicles_.Report(0, true, reply);
 }
@@ -14,7 +14,7 @@ void InProcessTransport::Resume(std::uint64_t /*exchange*/, const std::vector<do
 void InProcessTransport::Exchange(const ExchangeRequest& request, ExchangeReply& reply) {
   if (!vehicles_.Advance(request, 0, reply)) reply.fault = vehicles_.FindFault();
   if (!request.snapshot) return;
-  reply.snapshot.resize(static_cast<std::size_t>(count_) * vehicles_.NumbersPerVehicle());
+  reply.snapshot.resize(count_);
   vehicles_.Save(reply.snapshot.data());
 }
 

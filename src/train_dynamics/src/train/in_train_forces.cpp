@@ -31,10 +31,19 @@ void InTrainForces::Set::Resize(int padded) {
 }
 
 ConnectionArrays InTrainForces::Set::Arrays() {
-  return {rate_mps.data(),           extension_m.data(),    force_n.data(),
-          elastic_n.data(),          stick_m.data(),        stick_n.data(),
-          tension_n.data(),          tension_time_s.data(), compression_n.data(),
-          compression_time_s.data(), dissipated_j.data()};
+  ConnectionArrays arrays{};
+  arrays.rate_mps = rate_mps.data();
+  arrays.extension_m = extension_m.data();
+  arrays.force_n = force_n.data();
+  arrays.elastic_n = elastic_n.data();
+  arrays.stick_m = stick_m.data();
+  arrays.stick_n = stick_n.data();
+  arrays.tension_n = tension_n.data();
+  arrays.tension_time_s = tension_time_s.data();
+  arrays.compression_n = compression_n.data();
+  arrays.compression_time_s = compression_time_s.data();
+  arrays.dissipated_j = dissipated_j.data();
+  return arrays;
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {

@@ -2,15 +2,15 @@
 
 namespace train_dynamics {
 
-ExchangeReply::ExchangeReply(int vehicles, const std::vector<int>& detailed) {
-  for (std::vector<double>* array : {&head_displacement_m, &head_velocity_mps, &position_m, &speed_mps,
-                                     &shoe_force_n, &wheel_force_n, &creepage}) {
-    array->resize(vehicles);
-  }
-  state_digest.resize(vehicles);
-  energy.resize(vehicles);
-  details.resize(detailed.size());
+VehicleRecords::VehicleRecords(int vehicles, const std::vector<int>& detailed)
+    : state_digest(vehicles), details(detailed.size()) {
+  ResizeRecord(vehicles, *this);
   for (size_t i = 0; i < detailed.size(); ++i) details[i].vehicle = detailed[i];
+}
+
+ExchangeReply::ExchangeReply(int vehicles, const std::vector<int>& detailed)
+    : VehicleRecords(vehicles, detailed), energy(vehicles) {
+  ResizeReply(vehicles, *this);
 }
 
 }  // namespace train_dynamics

@@ -66,7 +66,7 @@ void RunSummary::Observe(const TrainRecord& record) {
   } else if (HasStopped() && std::abs(mean_speed_mps_) > kMoving) {
     stop_time_s_ = stop_distance_m_ = kNone;
   }
-  if (record.ledger != nullptr) {
+  if (record.ledger) {
     ledger_ = *record.ledger;
     if (record.exchange == 0) initial_energy_j_ = ledger_.Stored();
   }
@@ -101,7 +101,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
   std::snprintf(digest, sizeof digest, "%016" PRIx64, state_digest_);
   std::ostringstream json;
   json << "{\n  \"version\": \"" << TRAIN_BRAKE_VERSION << "\",\n  \"scenario\": " << Quoted(scenario_.name)
-       << ",\n  \"model\": \"" << ModelName(scenario_.model) << "\",\n  \"vehicles\": " << vehicles_
+       << ",\n  \"model\": \"" << scenario_.ModelNames() << "\",\n  \"vehicles\": " << vehicles_
        << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
        << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
        << ",\n  \"simulated_s\": " << Number(simulated_s)

@@ -61,18 +61,45 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
                       " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
-}  // namespace
-
-const char* ModelName(VehicleModel model) {
-  switch (model) {
-    case VehicleModel::kLtd:
-      return "ltd";
-    case VehicleModel::kLtdNoInertia:
-      return "ltd-no-inertia";
-    default:
-      return "2d";
+/// The positions that wheels can have in a run at most.
+///
+/// Without traction nothing but the grade drives a train: its speed stays below that of the start plus g T times the
+/// steepest fall ahead, and likewise backwards. With traction this bound must grow.
+Stretch ReachOf(const ScenarioParams& scenario) {
+  double steepest_fall = 0.0, steepest_rise = 0.0;
+  for (const GradeParams& grade : scenario.track.grades) {
+    steepest_fall = std::max(steepest_fall, -0.01 * grade.grade_percent);
+    steepest_rise = std::max(steepest_rise, 0.01 * grade.grade_percent);
   }
+  double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
+  double rear_m = front_m;
+  for (const ConsistGroupParams& group : scenario.train.consist)
+    rear_m -= group.count * group.vehicle.length_m;
+  const double time_s = scenario.duration_s, speed_mps = scenario.InitialSpeed();
+  const auto way = [&](double start_mps, double slope) {
+    return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
+  };
+  return {rear_m - way(-speed_mps, steepest_rise), front_m + way(speed_mps, steepest_fall)};
 }
+
+/// Warns once of the entries of a list of the track that no wheel reaches.
+template <class Entry, class EndOf>
+void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of,
+                 const Stretch& reach, std::vector<Warning>& warnings) {
+  std::size_t beyond = 0, first = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].from_m < reach.to_m && end_of(entries[i]) > reach.from_m) continue;
+    if (beyond++ == 0) first = i;
+  }
+  if (beyond == 0) return;
+  const std::string key = list + Index(first);
+  warnings.push_back({key, key + " on [" + Short(entries[first].from_m) + ", " +
+                               Short(end_of(entries[first])) + "] m is reached by no wheel: they are on [" +
+                               Short(reach.from_m) + ", " + Short(reach.to_m) + "] m at most in this run" +
+                               (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
+}
+
+}  // namespace
 
 int VehicleIndex(int number, int vehicles) {
   const int index = number > 0 ? number - 1 : vehicles + number;
@@ -88,11 +115,37 @@ int ScenarioParams::RecordsPerLedger() const {
   return static_cast<int>(Parts(ledger_interval_s, record_interval_s));
 }
 
+bool ScenarioParams::Uses(VehicleModel wanted) const {
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    if (ModelOfGroup(i) == wanted) return true;
+  }
+  return train.consist.empty() && model == wanted;
+}
+
+std::vector<VehicleModel> ScenarioParams::VehicleModels() const {
+  std::vector<VehicleModel> models;
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    models.insert(models.end(), train.consist[i].count, ModelOfGroup(i));
+  }
+  return models;
+}
+
+std::string ScenarioParams::ModelNames() const {
+  std::string names;
+  for (const auto& [key, known] : kVehicleModels) {
+    if (Uses(known)) names += (names.empty() ? "" : ", ") + std::string(key);
+  }
+  return names;
+}
+
 std::vector<int> ScenarioParams::DetailedVehicles() const {
   std::vector<int> detailed;
-  if (model != VehicleModel::kTwoD) return detailed;
-  const int vehicles = train.VehicleCount();
-  for (int number : detail_vehicles) detailed.push_back(VehicleIndex(number, vehicles));
+  if (!Uses(VehicleModel::kTwoD)) return detailed;
+  const std::vector<VehicleModel> models = VehicleModels();
+  for (int number : detail_vehicles) {
+    const int vehicle = VehicleIndex(number, static_cast<int>(models.size()));
+    if (models[vehicle] == VehicleModel::kTwoD) detailed.push_back(vehicle);
+  }
   std::sort(detailed.begin(), detailed.end());
   detailed.erase(std::unique(detailed.begin(), detailed.end()), detailed.end());
   return detailed;
@@ -113,7 +166,8 @@ std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
     const int vehicle = VehicleIndex(detail_vehicles[i], vehicles);
     if (vehicle < 0) {
       broken.push_back({"detail_vehicles" + Index(i), VehicleRule(vehicles), {"train"}});
-    } else if (model == VehicleModel::kTwoD && train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
+    } else if (VehicleModels()[vehicle] == VehicleModel::kTwoD &&
+               train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
       broken.push_back({"detail_vehicles" + Index(i),
                         "must be a vehicle with wheelsets_per_bogie 2: full detail is not recorded of others",
                         {"train"}});
@@ -173,18 +227,36 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
 }
 
 void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
-  if (model != VehicleModel::kTwoD || train.consist.empty()) return;
-  const double front_m = start_position_m + 0.5 * train.consist.front().vehicle.length_m;
-  double rear_m = front_m;
-  for (const ConsistGroupParams& group : train.consist) rear_m -= group.count * group.vehicle.length_m;
+  if (!Uses(VehicleModel::kTwoD) || train.consist.empty()) return;
+  /// Where vehicles of the 2D model stand at the start, without a gap.
+  struct Stretch {
+    double rear_m, front_m;
+  };
+  std::vector<Stretch> stretches;
+  double rear_m = start_position_m + 0.5 * train.consist.front().vehicle.length_m;
+  bool goes_on = false;
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const bool is_two_d = ModelOfGroup(i) == VehicleModel::kTwoD;
+    if (is_two_d && !goes_on) stretches.push_back({rear_m, rear_m});
+    rear_m -= train.consist[i].count * train.consist[i].vehicle.length_m;
+    if (is_two_d) stretches.back().rear_m = rear_m;
+    goes_on = is_two_d;
+  }
+  const bool is_mixed = Uses(VehicleModel::kLtd) || Uses(VehicleModel::kLtdNoInertia);
+  const std::string who = is_mixed ? "vehicles of the 2d model at their start, which stand"
+                                   : "the train at its start, which stands";
   for (std::size_t i = 0; i < track.dips.size(); ++i) {
     const DipParams& dip = track.dips[i];
-    if (dip.depth_m == 0.0 || !(dip.from_m < front_m && dip.from_m + dip.length_m > rear_m)) continue;
-    broken.push_back({"track.dips" + Index(i),
-                      "must not lie under the train at its start, which stands on [" + Short(rear_m) + ", " +
-                          Short(front_m) + "] m; the dip is on [" + Short(dip.from_m) + ", " +
-                          Short(dip.from_m + dip.length_m) + "] m",
-                      {"train", "start_position_m", "model"}});
+    if (dip.depth_m == 0.0) continue;
+    for (const Stretch& stretch : stretches) {
+      if (!(dip.from_m < stretch.front_m && dip.from_m + dip.length_m > stretch.rear_m)) continue;
+      broken.push_back({"track.dips" + Index(i),
+                        "must not lie under " + who + " on [" + Short(stretch.rear_m) + ", " +
+                            Short(stretch.front_m) + "] m; the dip is on [" + Short(dip.from_m) + ", " +
+                            Short(dip.from_m + dip.length_m) + "] m",
+                        {"train", "start_position_m", "model"}});
+      break;
+    }
   }
 }
 
@@ -215,14 +287,36 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
              "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and "
              "turn again sooner than real ones; if that is meant, say accept_large_inertia: true"});
   }
-  if (scenario.model != VehicleModel::kTwoD) {
+  for (const VehicleModel model : {VehicleModel::kLtd, VehicleModel::kLtdNoInertia}) {
+    if (!scenario.Uses(model)) continue;
     const auto leaves_out = [&](const std::string& key, std::size_t entries) {
       if (entries == 0) return;
-      warnings.push_back({key, std::string("the ") + ModelName(scenario.model) + " model leaves out " + key +
-                                   " (" + Counted(entries) + ")"});
+      warnings.push_back({key, std::string("the ") + ModelName(model) + " model leaves out " + key + " (" +
+                                   Counted(entries) + ")"});
     };
     leaves_out("track.dips", scenario.track.dips.size());
     leaves_out("track.friction_patches", scenario.track.friction_patches.size());
+  }
+  else if (!train.consist.empty()) {
+    const Stretch reach = ReachOf(scenario);
+    WarnOfReach(
+        "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
+        reach, warnings);
+    WarnOfReach(
+        "track.friction_patches", scenario.track.friction_patches,
+        [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach,
+        warnings);
+  }
+  if (scenario.Uses(VehicleModel::kTwoD)) {
+    const std::vector<VehicleModel> models = scenario.VehicleModels();
+    for (std::size_t i = 0; i < scenario.detail_vehicles.size(); ++i) {
+      const int number = scenario.detail_vehicles[i];
+      const VehicleModel model = models[VehicleIndex(number, static_cast<int>(models.size()))];
+      if (model == VehicleModel::kTwoD) continue;
+      const std::string key = "detail_vehicles" + Index(i);
+      warnings.push_back({key, key + " is " + std::to_string(number) + ", a vehicle of the " +
+                                   ModelName(model) + " model, which has no details"});
+    }
   }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";

@@ -8,7 +8,7 @@
 namespace train_dynamics {
 namespace {
 
-constexpr std::uint64_t kFormatVersion = 1;  // rises when the fields or their meaning change
+constexpr std::uint64_t kFormatVersion = 2;  // rises when the fields or their meaning change
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -53,17 +53,33 @@ ByteReader ReaderOf(const Bytes& bytes, const char* mark, const std::string& wha
   return {bytes.data() + kHead, end - kHead};
 }
 
+void Add(const std::vector<StateRow>& states, ByteWriter& writer) {
+  writer.Add(std::uint64_t{states.size()});
+  for (const StateRow& state : states) writer.Add(state);
+}
+
+std::vector<StateRow> States(ByteReader& reader) {
+  std::vector<StateRow> states;
+  for (std::uint64_t left = reader.Word(); left > 0; --left) states.push_back(reader.Numbers());
+  return states;
+}
+
 constexpr const char* kBlockMark = "TBBLOCK\n";
 constexpr const char* kTrainMark = "TBTRAIN\n";
 
 }  // namespace
 
+void CheckRows(const std::vector<StateRow>& rows, int vehicles) {
+  if (rows.size() == static_cast<std::size_t>(vehicles)) return;
+  throw SnapshotError("is of " + std::to_string(rows.size()) + " vehicle(s), not of " +
+                      std::to_string(vehicles));
+}
+
 Bytes Encode(const BlockSnapshot& snapshot) {
   ByteWriter writer = Begin(kBlockMark);
   writer.Add(snapshot.exchange);
   writer.Add(snapshot.first);
-  writer.Add(snapshot.count);
-  writer.Add(snapshot.state);
+  Add(snapshot.states, writer);
   return Finish(writer);
 }
 
@@ -72,8 +88,7 @@ BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes) {
   BlockSnapshot snapshot;
   snapshot.exchange = reader.Word();
   snapshot.first = reader.Word();
-  snapshot.count = reader.Word();
-  snapshot.state = reader.Numbers();
+  snapshot.states = States(reader);
   reader.End();
   return snapshot;
 }
@@ -83,7 +98,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.scenario);
   writer.Add(checkpoint.exchange);
   writer.Add(checkpoint.state_digest);
-  writer.Add(checkpoint.vehicles);
+  Add(checkpoint.vehicles, writer);
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
@@ -96,7 +111,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.scenario = reader.Text();
   checkpoint.exchange = reader.Word();
   checkpoint.state_digest = reader.Word();
-  checkpoint.vehicles = reader.Numbers();
+  checkpoint.vehicles = States(reader);
   checkpoint.connections = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();

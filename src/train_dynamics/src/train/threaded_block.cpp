@@ -8,18 +8,38 @@
 
 namespace train_dynamics {
 
-int UsefulThreads(VehicleModel model, int vehicles, int threads) {
-  const int per_thread = model == VehicleModel::kTwoD ? kMostLanes : 1000;
-  return std::clamp(vehicles / per_thread, 1, std::max(1, threads));
+namespace {
+
+/// What a step of a vehicle costs, in steps of an LTD vehicle.
+constexpr long kCostOfBarrier = 1000;
+long CostOf(VehicleModel model) { return model == VehicleModel::kTwoD ? kCostOfBarrier / kMostLanes : 1; }
+
+/// The cost of the vehicles [first, first + i), for i = 0 ... count.
+std::vector<long> CostsBefore(const ScenarioParams& scenario, int first, int count) {
+  const std::vector<VehicleModel> models = scenario.VehicleModels();
+  std::vector<long> before = {0};
+  for (int i = first; i < first + count; ++i) before.push_back(before.back() + CostOf(models[i]));
+  return before;
+}
+
+}  // namespace
+
+int UsefulThreads(const ScenarioParams& scenario, int first, int count, int threads) {
+  const long worth = CostsBefore(scenario, first, count).back() / kCostOfBarrier;
+  return static_cast<int>(std::clamp(worth, 1L, std::max(1L, long{threads})));
 }
 
 ThreadedBlock::ThreadedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count,
                              int threads) {
   const int size = std::clamp(threads, 1, count);
-  for (int i = 0; i < size; ++i) {
-    const int begin = static_cast<int>(long{count} * i / size);
-    const int end = static_cast<int>(long{count} * (i + 1) / size);
+  const std::vector<long> before = CostsBefore(scenario, first, count);
+  for (int i = 0, begin = 0; i < size; ++i) {
+    // The last vehicle that an equal part of the work reaches; at least one vehicle for each share.
+    const auto beyond = std::upper_bound(before.begin(), before.end(), before.back() * (i + 1) / size);
+    const int end =
+        std::clamp(static_cast<int>(beyond - before.begin()) - 1, begin + 1, count - (size - 1 - i));
     shares_.push_back({begin, MakeVehicleBlock(scenario, consist, first + begin, end - begin)});
+    begin = end;
   }
   team_ = std::make_unique<ThreadTeam>(size);
 }
@@ -39,12 +59,12 @@ void ThreadedBlock::Report(int offset, bool with_energy, ExchangeReply& reply) c
   for (const Share& share : shares_) share.block->Report(offset + share.first, with_energy, reply);
 }
 
-void ThreadedBlock::Save(double* state) const {
-  for (const Share& share : shares_) share.block->Save(state + share.first * NumbersPerVehicle());
+void ThreadedBlock::Save(StateRow* rows) const {
+  for (const Share& share : shares_) share.block->Save(rows + share.first);
 }
 
-void ThreadedBlock::Restore(const double* state) {
-  for (Share& share : shares_) share.block->Restore(state + share.first * NumbersPerVehicle());
+void ThreadedBlock::Restore(const StateRow* rows) {
+  for (Share& share : shares_) share.block->Restore(rows + share.first);
 }
 
 VehicleFault ThreadedBlock::FindFault() const {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace train_dynamics {
 
@@ -13,8 +14,9 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       pressures_(std::move(pressures)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
-      reply_(consist.vehicles(), scenario.DetailedVehicles()),
-      acceleration_mps2_(consist.vehicles(), std::numeric_limits<double>::quiet_NaN()) {
+      reply_(consist.vehicles(), scenario.DetailedVehicles()) {
+  record_.vehicles = reply_;
+  record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
@@ -81,41 +83,36 @@ void TrainMaster::Exchange() {
 }
 
 void TrainMaster::ShowRecord() {
-  if (!last_speed_mps_.empty()) {
-    for (size_t i = 0; i < last_speed_mps_.size(); ++i) {
-      acceleration_mps2_[i] = (reply_.speed_mps[i] - last_speed_mps_[i]) / scenario_.record_interval_s;
-    }
+  TrainRecord& record = record_;
+  std::swap(record.vehicles, static_cast<VehicleRecords&>(reply_));  // the next record fills all of it anew
+  const std::vector<double>& speed = record.vehicles.speed_mps;
+  for (size_t i = 0; i < last_speed_mps_.size(); ++i) {
+    record.acceleration_mps2[i] = (speed[i] - last_speed_mps_[i]) / scenario_.record_interval_s;
   }
-  last_speed_mps_ = reply_.speed_mps;
+  last_speed_mps_ = speed;
 
   Digest digest;
   digest.Add(digest_);
-  for (std::uint64_t vehicle : reply_.state_digest) digest.Add(vehicle);
+  for (std::uint64_t vehicle : record.vehicles.state_digest) digest.Add(vehicle);
   forces_.AddMemoryTo(digest);
   digest_ = digest.value();
 
-  EnergyLedger ledger;
-  if (request_.ledger) ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
   double mass = 0.0, momentum = 0.0, moment = 0.0;
   for (size_t i = 0; i < mass_kg_.size(); ++i) {
     mass += mass_kg_[i];
-    momentum += mass_kg_[i] * reply_.speed_mps[i];
-    moment += mass_kg_[i] * reply_.position_m[i];
+    momentum += mass_kg_[i] * speed[i];
+    moment += mass_kg_[i] * record.vehicles.position_m[i];
   }
-  pressures_(time_s(), record_pressure_pa_);
-  forces_.Extensions(extension_m_);
-  const TrainRecord record{time_s(),
-                           exchange_,
-                           momentum / mass,
-                           moment / mass,
-                           reply_,
-                           acceleration_mps2_,
-                           request_.coupler_force_n,
-                           extension_m_,
-                           record_pressure_pa_,
-                           request_.cylinder_pressure_pa,
-                           digest_,
-                           request_.ledger ? &ledger : nullptr};
+  record.time_s = time_s();
+  record.exchange = exchange_;
+  record.mean_speed_mps = momentum / mass;
+  record.mean_position_m = moment / mass;
+  record.held = request_;
+  forces_.Extensions(record.coupler_extension_m);
+  pressures_(time_s(), record.cylinder_pressure_pa);
+  record.state_digest = digest_;
+  record.ledger.reset();
+  if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
   for (const Observer& observer : observers_) observer(record);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <type_traits>
 #include <variant>
 
 #include "train_dynamics/train/snapshot.h"
@@ -26,13 +25,23 @@ WagonState<double, kPerBogie> StartState(const BogieVehicle<kPerBogie>& wagon, d
   return StaticEquilibrium(wagon, origin_m, speed_mps);
 }
 
-VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const TrackParams& /*track*/, const LtdState<double>& s) {
-  return {KineticEnergy(vehicle, s), 0.0, s.work};
+VehicleEnergy EnergyOf(double kinetic_j, double potential_j, const VehicleWork<double>& work) {
+  VehicleEnergy energy;
+  energy.kinetic_j = kinetic_j;
+  energy.potential_j = potential_j;
+  energy.gravity_work_j = work.gravity;
+  energy.traction_work_j = work.traction;
+  energy.dissipated_j = work.dissipated;
+  return energy;
+}
+
+VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const Track& /*track*/, const LtdState<double>& s) {
+  return EnergyOf(KineticEnergy(vehicle, s), 0.0, s.work);
 }
 template <int kPerBogie>
-VehicleEnergy EnergyOf(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track,
+VehicleEnergy EnergyOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
                        const WagonState<double, kPerBogie>& s) {
-  return {KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work};
+  return EnergyOf(KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work);
 }
 
 /// WagonDetail holds vehicles with two wheelsets per bogie; the scenario's rules refuse others.
@@ -50,11 +59,15 @@ std::string Describe(const char* what, double value, const char* unit) {
   return std::string(what) + " is " + std::to_string(value) + " " + unit;
 }
 
-std::string FaultOf(const LtdState<double>& s) { return Describe("speed", s.v_mps, "m/s"); }
+std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const LtdState<double>& s) {
+  return Describe("speed", s.v_mps, "m/s");
+}
 
 /// Names the first body that is not where a body can be.
 template <int kPerBogie>
-std::string FaultOf(const WagonState<double, kPerBogie>& s) {
+std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
+                    const WagonState<double, kPerBogie>& s) {
+  const OverRail<double, kPerBogie> over = OverRailOf(wagon, track, s);
   for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
     const auto describe = [b](const char* what, double value, const char* unit) {
       return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
@@ -62,10 +75,10 @@ std::string FaultOf(const WagonState<double, kPerBogie>& s) {
     const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
     if (wrong(s.velocity.x[b], absurd::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
     if (wrong(s.velocity.z[b], absurd::kSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
-    if (wrong(s.position.z[b], absurd::kMovement))
-      return describe("vertical displacement", s.position.z[b], "m");
-    if (b < kWheelset1 && wrong(s.position.pitch[b], absurd::kPitch))
-      return describe("pitch", s.position.pitch[b], "rad");
+    if (wrong(over.z[b], absurd::kMovement))
+      return describe("vertical displacement over the rail", over.z[b], "m");
+    if (b < kWheelset1 && wrong(over.pitch[b], absurd::kPitch))
+      return describe("pitch over the rail", over.pitch[b], "rad");
     if (b >= kWheelset1 && wrong(s.velocity.pitch[b], absurd::kRotation)) {
       return describe("rotation", s.velocity.pitch[b], "rad/s");
     }
@@ -75,61 +88,56 @@ std::string FaultOf(const WagonState<double, kPerBogie>& s) {
 
 // ---- what they have in common ---------------------------------------------------------------------------------
 
-using AnyBatch = std::variant<VehicleBatch<LtdVehicle>, VehicleBatch<Wagon>, VehicleBatch<SixAxleVehicle>>;
+/// Equal vehicles, one behind the other. A model over lanes is one more alternative here.
+using Batch = std::variant<VehicleBatch<Wagon>, VehicleBatch<SixAxleVehicle>, VehicleBatch<LtdVehicle>>;
 
-/// Calls use(vehicle) with the model of a vehicle that a scenario asks for.
-template <class Use>
-auto WithModel(const ScenarioParams& scenario, const VehicleParams& params, const Use& use) {
-  if (scenario.model == VehicleModel::kTwoD) return WithBogieVehicle(params, use);
-  return use(LtdVehicle(params, scenario.model == VehicleModel::kLtd, scenario.integrator));
+/// @param centre_m  of each vehicle, at the start
+template <class Vehicle>
+Batch MakeBatch(const Vehicle& vehicle, double speed_mps, const std::vector<double>& centre_m) {
+  auto state = StartState(vehicle, 0.0, speed_mps);
+  std::vector<typename VehicleBatch<Vehicle>::State> states;
+  for (const double at : centre_m) {
+    state.origin_m = at;
+    states.push_back(state);
+  }
+  return VehicleBatch<Vehicle>(vehicle, BestLaneKernels(), states);
 }
 
-template <class Batch>
-constexpr int NumbersOf() {
-  return sizeof(typename Batch::State) / sizeof(double);
+Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,
+                const std::vector<double>& centre_m) {
+  const double speed_mps = scenario.InitialSpeed();
+  if (model == VehicleModel::kTwoD) {
+    return WithBogieVehicle(params,
+                            [&](const auto& vehicle) { return MakeBatch(vehicle, speed_mps, centre_m); });
+  }
+  const bool with_inertia = model == VehicleModel::kLtd;
+  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator), speed_mps, centre_m);
 }
 
-/// Numbers in the state of a vehicle of this model.
-int StateNumbers(const ScenarioParams& scenario, const VehicleParams& params) {
-  if (scenario.model != VehicleModel::kTwoD) return NumbersOf<VehicleBatch<LtdVehicle>>();
-  return params.wheelsets_per_bogie == 3 ? NumbersOf<VehicleBatch<SixAxleVehicle>>()
-                                         : NumbersOf<VehicleBatch<Wagon>>();
-}
-
-/// Vehicles in one batch for each run of equal ones.
-class Block : public VehicleBlock {
+/// Vehicles of this program's own models, in one batch for each run of equal vehicles.
+class BatchedBlock : public VehicleBlock {
  public:
-  Block(const ScenarioParams& scenario, const Consist& consist, int first, int count)
+  BatchedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count)
       : track_(scenario.track), first_(first) {
-    for (const VehicleParams& params : consist.vehicle_types) {
-      numbers_ = std::max(numbers_, StateNumbers(scenario, params));
-    }
     for (int i = first; i < first + count;) {
-      const int type = consist.vehicle_type[i], begin = i;
-      while (i < first + count && consist.vehicle_type[i] == type) ++i;
-      const auto batch_of = [&](const auto& vehicle) -> AnyBatch {
-        auto state = StartState(vehicle, 0.0, scenario.InitialSpeed());
-        std::vector<decltype(state)> states;
-        for (int k = begin; k < i; ++k) {
-          state.origin_m = scenario.start_position_m + consist.centre_m[k];
-          states.push_back(state);
-        }
-        return VehicleBatch<std::decay_t<decltype(vehicle)>>(vehicle, BestLaneKernels(), states);
-      };
-      runs_.push_back({begin, WithModel(scenario, consist.vehicle_types[type], batch_of)});
+      const int group = consist.vehicle_type[i], begin = i;
+      std::vector<double> centre_m;
+      for (; i < first + count && consist.vehicle_type[i] == group; ++i) {
+        centre_m.push_back(scenario.start_position_m + consist.centre_m[i]);
+      }
+      const VehicleModel model = scenario.ModelOfGroup(group);
+      runs_.push_back({begin, model, MakeBatch(model, consist.vehicle_types[group], scenario, centre_m)});
     }
   }
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
     bool sound = true;
     for (Run& run : runs_) {
-      const int at = offset + run.begin - first_;
-      const VehicleArrays arrays = {&request.coupler_force_n[at], &request.coupler_force_n[at + 1],
-                                    &request.cylinder_pressure_pa[at], &reply.head_displacement_m[at],
-                                    &reply.head_velocity_mps[at]};
+      const std::size_t at = offset + run.begin - first_;
       sound &= std::visit(
           [&](auto& batch) {
-            return batch.Advance(track_, request.dt_s, request.steps, arrays, request.record);
+            return batch.Advance(track_, request.dt_s, request.steps, PlacesOf(request, at),
+                                 PlacesOf(static_cast<ReplyArrays&>(reply), at), request.record);
           },
           run.batch);
     }
@@ -142,9 +150,8 @@ class Block : public VehicleBlock {
       const std::size_t at = offset + run.begin - first_;
       std::visit(
           [&](const auto& batch) {
-            batch.Record({&reply.head_displacement_m[at], &reply.head_velocity_mps[at], &reply.position_m[at],
-                          &reply.speed_mps[at], &reply.shoe_force_n[at], &reply.wheel_force_n[at],
-                          &reply.creepage[at]});
+            batch.Record(PlacesOf(static_cast<ReplyArrays&>(reply), at),
+                         PlacesOf(static_cast<RecordArrays&>(reply), at));
             batch.Digests(&reply.state_digest[at]);
             for (int i = 0; with_energy && i < batch.size(); ++i) {
               reply.energy[at + i] = EnergyOf(batch.vehicle(), track_, batch.StateOf(i));
@@ -158,73 +165,84 @@ class Block : public VehicleBlock {
     }
   }
 
-  int NumbersPerVehicle() const override { return numbers_; }
-
-  void Save(double* state) const override {
-    ForEachVehicle(*this, [&](const auto& batch, int i, int /*vehicle*/) {
-      const auto vehicle = batch.StateOf(i);
-      std::fill_n(state, numbers_, 0.0);
-      std::memcpy(state, &vehicle, sizeof vehicle);
-      state += numbers_;
-    });
-  }
-
-  void Restore(const double* state) override {
-    ForEachVehicle(*this, [&](auto& batch, int i, int /*vehicle*/) {
-      auto vehicle = batch.StateOf(i);
-      std::memcpy(static_cast<void*>(&vehicle), state, sizeof vehicle);
-      batch.SetState(i, vehicle);
-      state += numbers_;
-    });
-  }
-
-  VehicleFault FindFault() const override {
-    VehicleFault fault;
-    ForEachVehicle(*this, [&](const auto& batch, int i, int vehicle) {
-      if (fault.vehicle >= 0) return;
-      const auto state = batch.StateOf(i);
-      if (!IsSound(state)) fault = {vehicle, FaultOf(state)};
-    });
-    return fault;
-  }
-
- private:
-  /// Vehicles of one type, one behind the other.
-  struct Run {
-    int begin;  ///< index of the first in the train
-    AnyBatch batch;
-  };
-
-  /// Calls use(batch, index in it, index in the train) for all vehicles in order.
-  template <class Self, class Use>
-  static void ForEachVehicle(Self& self, const Use& use) {
-    for (auto& run : self.runs_) {
+  void Save(StateRow* rows) const override {
+    for (const Run& run : runs_) {
       std::visit(
-          [&](auto& batch) {
-            for (int i = 0; i < batch.size(); ++i) use(batch, i, run.begin + i);
+          [&](const auto& batch) {
+            for (int i = 0; i < batch.size(); ++i, ++rows) {
+              const auto state = batch.StateOf(i);
+              rows->resize(batch.kNumbers);
+              std::memcpy(rows->data(), &state, sizeof state);
+            }
           },
           run.batch);
     }
   }
 
-  TrackParams track_;
+  void Restore(const StateRow* rows) override {
+    for (Run& run : runs_) {
+      std::visit(
+          [&](auto& batch) {
+            for (int i = 0; i < batch.size(); ++i, ++rows) {
+              CheckNumbers(run, i, batch.kNumbers, rows->size());
+              auto state = batch.StateOf(i);
+              std::memcpy(static_cast<void*>(&state), rows->data(), sizeof state);
+              batch.SetState(i, state);
+            }
+          },
+          run.batch);
+    }
+  }
+
+  VehicleFault FindFault() const override {
+    for (const Run& run : runs_) {
+      const VehicleFault fault = std::visit(
+          [&run, this](const auto& batch) {
+            for (int i = 0; i < batch.size(); ++i) {
+              const auto state = batch.StateOf(i);
+              if (IsSound(batch.vehicle(), track_, state)) continue;
+              return VehicleFault{run.begin + i, FaultOf(batch.vehicle(), track_, state)};
+            }
+            return VehicleFault();
+          },
+          run.batch);
+      if (fault.vehicle >= 0) return fault;
+    }
+    return {};
+  }
+
+ private:
+  /// Vehicles of one group, one behind the other.
+  struct Run {
+    int begin;  ///< index of the first in the train
+    VehicleModel model;
+    Batch batch;
+  };
+
+  static void CheckNumbers(const Run& run, int i, std::size_t expected, std::size_t numbers) {
+    if (numbers == expected) return;
+    throw SnapshotError("has " + std::to_string(numbers) + " numbers of vehicle " +
+                        std::to_string(run.begin + i + 1) + ", but one of the " + ModelName(run.model) +
+                        " model has " + std::to_string(expected));
+  }
+
+  Track track_;
   int first_;
-  int numbers_ = 0;  ///< of the vehicle of the train that has most
   std::vector<Run> runs_;
 };
 
+template <class... Batches>
+constexpr int MostNumbers(const std::variant<Batches...>*) {
+  return std::max({Batches::kNumbers...});
+}
+
 }  // namespace
 
-void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& block, int vehicles) {
-  const std::size_t expected = static_cast<std::size_t>(vehicles) * block.NumbersPerVehicle();
-  if (snapshot.size() == expected) return;
-  throw SnapshotError("has " + std::to_string(snapshot.size()) + " numbers, but " + std::to_string(vehicles) +
-                      " vehicle(s) of this model have " + std::to_string(expected));
-}
+int MostStateNumbers() { return MostNumbers(static_cast<const Batch*>(nullptr)); }
 
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count) {
-  return std::make_unique<Block>(scenario, consist, first, count);
+  return std::make_unique<BatchedBlock>(scenario, consist, first, count);
 }
 
 }  // namespace train_dynamics

@@ -36,63 +36,91 @@ LaneKernels::RecordPack<LtdVehicle> RecordOf(const LaneKernels& kernels, const L
   return kernels.record_ltd;
 }
 
-/// The arrays of an exchange for a pack that is not full: its spare lanes get what the first lane gets.
-class SpareLanes {
+// ---- places in the arrays of an exchange ----------------------------------------------------------------------
+
+LoadPlaces Behind(LoadPlaces at, int vehicles) {
+  at.front_coupler_n += vehicles;
+  at.rear_coupler_n += vehicles;
+  ForEachLoad(
+      [vehicles](const LoadInfo&, const double*& place) {
+        if (place != nullptr) place += vehicles;
+      },
+      at);
+  return at;
+}
+
+template <class Function>
+void ForEachPlace(const Function& function, ReplyPlaces& places) {
+  ForEachReplyField(function, places);
+}
+template <class Function>
+void ForEachPlace(const Function& function, RecordPlaces& places) {
+  ForEachRecordField(function, places);
+}
+
+template <class Places>
+Places Behind(Places at, int vehicles) {
+  ForEachPlace([vehicles](const RecordInfo& field, double*& place) { place += vehicles * field.numbers; },
+               at);
+  return at;
+}
+
+/// The loads of a pack that is not full: its spare lanes get what the first lane gets.
+class SpareLoads {
  public:
-  SpareLanes(const VehicleArrays& at, int used) : at_(at), used_(used) {
-    Fill(at.front_coupler_n, front_);
-    Fill(at.rear_coupler_n, rear_);
-    Fill(at.cylinder_pressure_pa, pressure_);
+  SpareLoads(const LoadPlaces& at, int used) {
+    Fill(at.front_coupler_n, used, values_.front_coupler_n, places_.front_coupler_n);
+    Fill(at.rear_coupler_n, used, values_.rear_coupler_n, places_.rear_coupler_n);
+    ForEachLoad([used](const LoadInfo&, const double* from, Pack& values,
+                       const double*& place) { Fill(from, used, values, place); },
+                at, values_, places_);
   }
-  VehicleArrays arrays() {
-    return {front_.data(), rear_.data(), pressure_.data(), displacement_.data(), velocity_.data()};
-  }
-  void GiveBack() const {
-    std::copy_n(displacement_.begin(), used_, at_.head_displacement_m);
-    std::copy_n(velocity_.begin(), used_, at_.head_velocity_mps);
-  }
+  const LoadPlaces& places() const { return places_; }
 
  private:
   using Pack = std::array<double, kMostLanes>;
-  void Fill(const double* from, Pack& pack) const {
-    pack.fill(from[0]);
-    std::copy_n(from, used_, pack.begin());
+  static void Fill(const double* from, int used, Pack& values, const double*& place) {
+    if (from == nullptr) return;
+    values.fill(from[0]);
+    std::copy_n(from, used, values.begin());
+    place = values.data();
   }
-  const VehicleArrays at_;
-  const int used_;
-  Pack front_, rear_, pressure_, displacement_, velocity_;
+  VehicleLoads<Pack> values_;
+  LoadPlaces places_;
 };
 
-/// The same for the arrays of a record.
-class SpareRecord {
+/// Where the kernels write what a pack that is not full replies or records.
+template <class Places, int numbers>
+class Spare {
  public:
-  RecordArrays arrays() {
-    return {a_[0].data(), a_[1].data(), a_[2].data(), a_[3].data(), a_[4].data(), a_[5].data(), a_[6].data()};
+  Spare() {
+    double* next = values_.data();
+    ForEachPlace(
+        [&next](const RecordInfo& field, double*& place) {
+          place = next;
+          next += kMostLanes * field.numbers;
+        },
+        places_);
   }
-  void GiveBack(const RecordArrays& to, int used) const {
-    double* const arrays[] = {to.head_displacement_m, to.head_velocity_mps, to.position_m, to.speed_mps,
-                              to.shoe_force_n,        to.wheel_force_n,     to.creepage};
-    for (std::size_t i = 0; i < a_.size(); ++i) std::copy_n(a_[i].begin(), used, arrays[i]);
+  const Places& places() const { return places_; }
+
+  /// Copies what the first `used` vehicles of the pack have to their places.
+  void GiveBack(Places to, int used) {
+    const double* from = values_.data();
+    ForEachPlace(
+        [&from, used](const RecordInfo& field, double*& place) {
+          std::copy_n(from, used * field.numbers, place);
+          from += kMostLanes * field.numbers;
+        },
+        to);
   }
 
  private:
-  std::array<std::array<double, kMostLanes>, 7> a_;
+  std::array<double, static_cast<std::size_t>(kMostLanes* numbers)> values_;
+  Places places_;
 };
-
-VehicleArrays Behind(const VehicleArrays& at, int vehicles) {
-  return {at.front_coupler_n + vehicles, at.rear_coupler_n + vehicles, at.cylinder_pressure_pa + vehicles,
-          at.head_displacement_m + vehicles, at.head_velocity_mps + vehicles};
-}
-
-RecordArrays Behind(const RecordArrays& at, int vehicles) {
-  return {at.head_displacement_m + vehicles,
-          at.head_velocity_mps + vehicles,
-          at.position_m + vehicles,
-          at.speed_mps + vehicles,
-          at.shoe_force_n + vehicles,
-          at.wheel_force_n + vehicles,
-          at.creepage + vehicles};
-}
+using SpareReply = Spare<ReplyPlaces, kReplyNumbers>;
+using SpareRecord = Spare<RecordPlaces, kRecordNumbers>;
 
 }  // namespace
 
@@ -158,39 +186,42 @@ void VehicleBatch<Vehicle>::SetState(int i, const State& state) {
 }
 
 template <class Vehicle>
-bool VehicleBatch<Vehicle>::Advance(const TrackParams& track, double dt, int steps,
-                                    const VehicleArrays& arrays, bool with_output) {
+bool VehicleBatch<Vehicle>::Advance(const Track& track, double dt, int steps, const LoadPlaces& loads,
+                                    const ReplyPlaces& reply, bool with_output) {
   const int lanes = kernels_.lanes, full = size_ / lanes;
-  const auto step = [&](int packs, int from, const VehicleArrays& at) {
+  const auto step = [&](int packs, int from, const LoadPlaces& loads_there, const ReplyPlaces& reply_there) {
     std::byte* states = states_.data() + static_cast<std::size_t>(from) * lanes * sizeof(State);
     std::byte* outputs =
         with_output ? outputs_.data() + static_cast<std::size_t>(from) * lanes * sizeof(Output) : nullptr;
-    return step_(vehicle_, track, dt, steps, packs, at, states, outputs);
+    return step_(vehicle_, track, dt, steps, packs, loads_there, reply_there, states, outputs);
   };
-  bool sound = step(full, 0, arrays);
+  bool sound = step(full, 0, loads, reply);
   if (full < packs_) {
-    SpareLanes spare(Behind(arrays, full * lanes), size_ - full * lanes);
-    sound &= step(1, full, spare.arrays());
-    spare.GiveBack();
+    const int first = full * lanes, used = size_ - first;
+    const SpareLoads spare_loads(Behind(loads, first), used);
+    SpareReply spare_reply;
+    sound &= step(1, full, spare_loads.places(), spare_reply.places());
+    spare_reply.GiveBack(Behind(reply, first), used);
   }
   return sound;
 }
 
 template <class Vehicle>
-void VehicleBatch<Vehicle>::Record(const RecordArrays& record) const {
+void VehicleBatch<Vehicle>::Record(const ReplyPlaces& reply, const RecordPlaces& record) const {
   const int lanes = kernels_.lanes;
   for (int first = 0; first < size_; first += lanes) {
     const std::byte* state = &states_[first * sizeof(State)];
     const std::byte* output = &outputs_[first * sizeof(Output)];
-    const RecordArrays at = Behind(record, first);
     const int used = std::min(lanes, size_ - first);
     if (used == lanes) {
-      record_(vehicle_, state, output, at);
+      record_(vehicle_, state, output, Behind(reply, first), Behind(record, first));
       continue;
     }
-    SpareRecord spare;
-    record_(vehicle_, state, output, spare.arrays());
-    spare.GiveBack(at, used);
+    SpareReply spare_reply;
+    SpareRecord spare_record;
+    record_(vehicle_, state, output, spare_reply.places(), spare_record.places());
+    spare_reply.GiveBack(Behind(reply, first), used);
+    spare_record.GiveBack(Behind(record, first), used);
   }
 }
 

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "strict_config/validate.h"
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/contact/polach.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -69,7 +69,7 @@ void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
 
 template <int kPerBogie>
 BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle) : params(vehicle) {
-  Validate(params);
+  strict_config::Validate(params);
   if (params.wheelsets_per_bogie != kPerBogie) {
     throw std::invalid_argument("wheelsets_per_bogie must be " + std::to_string(kPerBogie) + ", got " +
                                 std::to_string(params.wheelsets_per_bogie));
@@ -165,7 +165,7 @@ double KineticEnergy(const BogieVehicle<kPerBogie>& w, const WagonState<double, 
 }
 
 template <int kPerBogie>
-double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const TrackParams& track,
+double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track,
                        const WagonState<double, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const ElementVector<double, kPerBogie> e = ElementsOf(w, s.position);
@@ -188,7 +188,8 @@ double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const TrackParams& trac
   for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) energy += kGravity * w.mass_kg[i] * s.position.z[i];
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    const RailHeight rail = RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
+    const RailHeight<double> rail =
+        RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
     energy += 2.0 * OneSidedEnergy(p.wheel_rail.normal.stiffness_n_per_m, rail.height - s.position.z[b]);
   }
   return energy;
@@ -200,7 +201,7 @@ template WagonState<double, 2> StaticEquilibrium(const BogieVehicle<2>&, double,
 template WagonState<double, 3> StaticEquilibrium(const BogieVehicle<3>&, double, double);
 template double KineticEnergy(const BogieVehicle<2>&, const WagonState<double, 2>&);
 template double KineticEnergy(const BogieVehicle<3>&, const WagonState<double, 3>&);
-template double PotentialEnergy(const BogieVehicle<2>&, const TrackParams&, const WagonState<double, 2>&);
-template double PotentialEnergy(const BogieVehicle<3>&, const TrackParams&, const WagonState<double, 3>&);
+template double PotentialEnergy(const BogieVehicle<2>&, const Track&, const WagonState<double, 2>&);
+template double PotentialEnergy(const BogieVehicle<3>&, const Track&, const WagonState<double, 3>&);
 
 }  // namespace train_dynamics

@@ -43,7 +43,7 @@ class CloseUp {
     Color color;                                ///< of its carbody
   };
 
-  void Draw(Drawing& drawing, const train_dynamics::TrackParams& track, const Sight& sight) const;
+  void Draw(Drawing& drawing, const train_dynamics::Track& track, const Sight& sight) const;
 
   /// Where a point of a body is drawn.
   /// @param offset_forward_m, offset_up_m  from the body's centre of gravity, in the body
@@ -55,7 +55,7 @@ class CloseUp {
   static constexpr double kLoadScale = 2.8 / 400e3, kFrictionScale = 4.0 / 10e3, kCouplerScale = 12.0 / 1e6;
 
  private:
-  void DrawRail(Drawing& drawing, const train_dynamics::TrackParams& track, double centre_m) const;
+  void DrawRail(Drawing& drawing, const train_dynamics::Track& track, double centre_m) const;
   void DrawBodies(Drawing& drawing, const Bodies& position, Color body) const;
   void DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides) const;
   void DrawContactForces(Drawing& drawing, const train_dynamics::WagonDetail& detail) const;

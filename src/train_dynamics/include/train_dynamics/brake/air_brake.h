@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,11 @@ struct ServiceApplicationParams {
     v.Numbers("wave_speed_mps", wave_speed_mps, kPositive);
     v.Numbers("rise_rate_per_s", rise_rate_per_s, kPositive);
     v.Check(reduction_kpa.size() >= 4, "reduction_kpa", "must list at least 4 reductions");
-    v.Check(Ascending(reduction_kpa), "reduction_kpa", "must ascend");
+    for (std::size_t i = 1; i < reduction_kpa.size(); ++i) {
+      v.Check(reduction_kpa[i] > reduction_kpa[i - 1], "reduction_kpa[" + std::to_string(i) + "]",
+              "must be greater than the one before, " + ShortestDecimal(reduction_kpa[i - 1]),
+              {"reduction_kpa"});
+    }
     v.Check(cylinder_pressure_kpa.size() == reduction_kpa.size(), "cylinder_pressure_kpa", kSameLength);
     v.Check(wave_speed_mps.size() == reduction_kpa.size(), "wave_speed_mps", kSameLength);
     v.Check(rise_rate_per_s.size() == reduction_kpa.size(), "rise_rate_per_s", kSameLength);
@@ -33,7 +38,6 @@ struct ServiceApplicationParams {
 
  private:
   static constexpr const char* kSameLength = "must have as many values as reduction_kpa";
-  static bool Ascending(const std::vector<double>& values);
 };
 
 /// An emergency application. Its pressure rises the slower the further a vehicle is from the source that

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "train_dynamics/suspension/linear_spring_damper.h"
+#include "train_dynamics/spring/linear_spring_damper.h"
 
 namespace train_dynamics {
 

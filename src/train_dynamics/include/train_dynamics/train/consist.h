@@ -1,23 +1,34 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "train_dynamics/coupler/connection.h"
+#include "train_dynamics/vehicle/vehicle_model.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 
 namespace train_dynamics {
+
+/// The names of the models in configurations.
+inline constexpr std::initializer_list<std::pair<const char*, VehicleModel>> kVehicleModels = {
+    {ModelName(VehicleModel::kTwoD), VehicleModel::kTwoD},
+    {ModelName(VehicleModel::kLtd), VehicleModel::kLtd},
+    {ModelName(VehicleModel::kLtdNoInertia), VehicleModel::kLtdNoInertia}};
 
 /// A run of equal vehicles, possibly in permanently joined units.
 struct ConsistGroupParams {
   VehicleParams vehicle;
   int count = 1;
-  int vehicles_per_unit = 1;         ///< 2: pairs, as of draw-bar wagons
-  ConnectionParams unit_connection;  ///< within a unit
+  int vehicles_per_unit = 1;                         ///< 2: pairs, as of draw-bar wagons
+  ConnectionParams unit_connection;                  ///< within a unit
+  std::optional<VehicleModel> model = std::nullopt;  ///< none: that of the scenario
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
+    v.Choice("model", model, kVehicleModels);
     v.Integer("count", count, Range{1, 100000, false, false});
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
@@ -38,7 +49,13 @@ struct TrainParams {
     v.Part("connection", connection, "couplers");
     v.List("consist", consist);
     v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
-    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all", {"consist"});
+    long vehicles = 0;
+    for (std::size_t i = 0; i < consist.size(); ++i) {
+      const bool fitted = vehicles <= 100000;
+      vehicles += consist[i].count;
+      v.Check(!fitted || vehicles <= 100000, "consist[" + std::to_string(i) + "].count",
+              "makes the train too long: it must have at most 100000 vehicles in all", {"consist"});
+    }
   }
 
   int VehicleCount() const;
@@ -50,8 +67,8 @@ struct TrainParams {
 struct Consist {
   explicit Consist(const TrainParams& train);
 
-  std::vector<VehicleParams> vehicle_types;
-  std::vector<int> vehicle_type;  ///< [vehicle] index into vehicle_types
+  std::vector<VehicleParams> vehicle_types;  ///< one of each group, in their order
+  std::vector<int> vehicle_type;             ///< [vehicle] index into vehicle_types and TrainParams::consist
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

@@ -12,7 +12,7 @@ class InProcessTransport : public Transport {
       : count_(consist.vehicles()), vehicles_(scenario, consist, 0, count_, threads) {}
 
   void Start(ExchangeReply& reply) override;
-  void Resume(std::uint64_t exchange, const std::vector<double>& snapshot, ExchangeReply& reply) override;
+  void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot, ExchangeReply& reply) override;
   void Exchange(const ExchangeRequest& request, ExchangeReply& reply) override;
 
  private:

@@ -7,39 +7,35 @@
 #include <vector>
 
 #include "train_dynamics/numeric/digest.h"
+#include "train_dynamics/train/snapshot.h"
+#include "train_dynamics/vehicle/vehicle_loads.h"
+#include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wagon.h"
+#include "train_dynamics/vehicle/work.h"
 
 /// The exchange between the master, which computes what acts between vehicles, and the ranks, which integrate
 /// them.
 ///
 ///   at the start      master -> rank   which vehicles, their parameters, the track              (Start)
 ///                     rank -> master   their state at time 0, as a record
-///   exchange k        master -> rank   k, dt, steps, coupler forces, cylinder pressures         (ExchangeRequest)
-///                     rank -> master   coupler heads at the interval's end; a record when asked (ExchangeReply)
+///   exchange k        master -> rank   k, dt, steps, loads (vehicle/vehicle_loads.h)            (ExchangeRequest)
+///                     rank -> master   coupler heads at the interval's end; a record when asked (ExchangeReply;
+///                                      vehicle/vehicle_record.h, vehicle/work.h)
 ///   barrier           the master has every reply before it computes exchange k + 1
 ///
-/// Forces and pressures are those of the middle of the interval and are held over it. All sums over vehicles
+/// Loads are those of the middle of the interval and are held over it. All sums over vehicles
 /// are made by the master in the order of the vehicles, so that a result does not depend on which rank a
 /// vehicle is in.
 namespace train_dynamics {
 
-struct ExchangeRequest {
+/// Asks for one exchange, with the loads on the vehicles.
+struct ExchangeRequest : LoadArrays {
   std::uint64_t exchange = 0;  ///< k, from 0
   double dt_s = 0.0;           ///< step of the vehicles' integrators
   int steps = 0;               ///< per exchange; the interval is steps * dt_s
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
   bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
-  std::vector<double>
-      coupler_force_n;  ///< [vehicles + 1]: [i] before, [i + 1] behind vehicle i; tension positive
-  std::vector<double> cylinder_pressure_pa;  ///< [vehicles]
-};
-
-/// The energies of one vehicle [J].
-struct VehicleEnergy {
-  double kinetic = 0.0;
-  double potential = 0.0;
-  VehicleWork<double> work;
 };
 
 /// One wagon in full detail, at the end of a step.
@@ -56,22 +52,21 @@ struct VehicleFault {
   std::string what;  ///< body, quantity and value
 };
 
-/// All arrays are indexed by vehicle; those of a record stay as they are when none was asked for.
-struct ExchangeReply {
-  std::vector<double> head_displacement_m;  ///< of the coupler heads since the start, forward positive
-  std::vector<double> head_velocity_mps;
-  VehicleFault fault;  ///< the first in the order of the vehicles
+/// The record of a row of vehicles.
+struct VehicleRecords : RecordArrays {
+  std::vector<std::uint64_t> state_digest;  ///< [vehicle]
+  std::vector<WagonDetail> details;         ///< whoever has one of these vehicles fills its entry
 
-  std::vector<double> position_m;  ///< record: of the vehicle's centre along the track
-  std::vector<double> speed_mps;
-  std::vector<double> shoe_force_n;   ///< of all shoes, backwards positive
-  std::vector<double> wheel_force_n;  ///< longitudinal wheel-rail force, backwards positive; NaN for LTD
-  std::vector<double> creepage;       ///< of the wheelset with the largest size; NaN for LTD
-  std::vector<std::uint64_t> state_digest;
-  std::vector<VehicleEnergy> energy;  ///< ledger
-  std::vector<double> snapshot;       ///< [vehicle][number], see VehicleBlock::Save
-  std::vector<WagonDetail>
-      details;  ///< record: whoever has one of these vehicles fills its entry (2D model only)
+  VehicleRecords() = default;
+  /// @param detailed  indices of the vehicles to be recorded in full detail
+  VehicleRecords(int vehicles, const std::vector<int>& detailed);
+};
+
+/// All arrays are indexed by vehicle; those of a record stay as they are when none was asked for.
+struct ExchangeReply : ReplyArrays, VehicleRecords {
+  VehicleFault fault;                 ///< the first in the order of the vehicles
+  std::vector<VehicleEnergy> energy;  ///< with a ledger
+  std::vector<StateRow> snapshot;     ///< see VehicleBlock::Save
 
   /// @param detailed  indices of the vehicles to be recorded in full detail
   ExchangeReply(int vehicles, const std::vector<int>& detailed);
@@ -85,7 +80,8 @@ class Transport {
   virtual void Start(ExchangeReply& reply) = 0;
   /// Brings all vehicles to a state that a snapshot holds, at the beginning of an exchange; replies as Start.
   /// @throws SnapshotError if the snapshot does not fit
-  virtual void Resume(std::uint64_t exchange, const std::vector<double>& snapshot, ExchangeReply& reply) = 0;
+  virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot,
+                      ExchangeReply& reply) = 0;
   /// One exchange with every vehicle; returns when all have replied.
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };

@@ -8,23 +8,15 @@
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/train/consist.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
+#include "train_dynamics/vehicle/vehicle_model.h"
 
 namespace train_dynamics {
-
-enum class VehicleModel {
-  kTwoD,         ///< the 27-DoF wagon
-  kLtd,          ///< one DoF, with the equivalent rotational mass
-  kLtdNoInertia  ///< one DoF, without it
-};
-
-/// The name of a model in configurations and on command lines.
-const char* ModelName(VehicleModel model);
 
 /// A braking scenario: a train on a track under a list of driver commands. All that a run depends on.
 struct ScenarioParams {
   std::string name;
   std::string description;
-  VehicleModel model = VehicleModel::kTwoD;
+  VehicleModel model = VehicleModel::kTwoD;  ///< of the groups of vehicles that name none
   TrainParams train;
   TrackParams track;
   std::string
@@ -46,10 +38,7 @@ struct ScenarioParams {
   void Visit(Visitor& v) {
     v.Text("name", name);
     v.Text("description", description);
-    v.Choice("model", model,
-             {{"2d", VehicleModel::kTwoD},
-              {"ltd", VehicleModel::kLtd},
-              {"ltd-no-inertia", VehicleModel::kLtdNoInertia}});
+    v.Choice("model", model, kVehicleModels);
     v.Part("train", train, "trains");
     v.Part("track", track, "tracks");
     v.Text("pressure_table", pressure_table);
@@ -78,8 +67,8 @@ struct ScenarioParams {
             "must be a multiple of record_interval_s", {"record_interval_s"});
     v.Check(Multiple(duration_s, record_interval_s), "duration_s", "must be a multiple of record_interval_s",
             {"record_interval_s"});
-    v.Check(integrator == LtdIntegrator::kLeapfrog || model != VehicleModel::kTwoD, "integrator",
-            "must be leapfrog for the 2d model: explicit creep forces are unstable", {"model"});
+    v.Check(integrator == LtdIntegrator::kLeapfrog || !Uses(VehicleModel::kTwoD), "integrator",
+            "must be leapfrog for the 2d model: explicit creep forces are unstable", {"model", "train"});
     for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, rule.reads);
   }
 
@@ -87,7 +76,12 @@ struct ScenarioParams {
   long Exchanges() const;
   int ExchangesPerRecord() const;
   int RecordsPerLedger() const;
-  /// Indices of the vehicles recorded in full detail, ascending, each once; none in an LTD model.
+  VehicleModel ModelOfGroup(std::size_t group) const { return train.consist[group].model.value_or(model); }
+  bool Uses(VehicleModel model) const;              ///< for any group
+  std::vector<VehicleModel> VehicleModels() const;  ///< [vehicle]
+  /// The names of the models of the train's groups, each once: "2d", or "2d, ltd".
+  std::string ModelNames() const;
+  /// Indices of the vehicles recorded in full detail, ascending, each once: those of the 2D model.
   std::vector<int> DetailedVehicles() const;
   double InitialSpeed() const { return initial_speed_kmh / 3.6; }  ///< [m/s]
 
@@ -118,7 +112,7 @@ struct Warning {
 ///
 ///   v_e < 2 F mu_s dt / (tan(phi) m)    F = 900 kN, m of the lightest vehicle
 ///
-/// Besides: parts of the scenario that its model, or its pressure table, leaves unused.
+/// Besides: parts of the scenario that its models, or its pressure table, leaves unused.
 std::vector<Warning> Warnings(const ScenarioParams& scenario);
 
 /// Index from 0 of a vehicle that is numbered from 1, or from -1 for the last; -1 if the train has no such

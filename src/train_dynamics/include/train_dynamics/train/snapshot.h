@@ -8,13 +8,15 @@
 
 namespace train_dynamics {
 
+/// The state of one vehicle as numbers: how many, and which, is the vehicle's own business.
+using StateRow = std::vector<double>;
+
 /// The state of a contiguous block of vehicles at the beginning of an exchange: all that their further motion
 /// depends on, but for their parameters.
 struct BlockSnapshot {
-  std::uint64_t exchange = 0;  ///< the next one
-  std::uint64_t first = 0;     ///< index of the block's first vehicle in the train
-  std::uint64_t count = 0;     ///< vehicles
-  std::vector<double> state;   ///< [vehicle][number], see VehicleBlock::Save
+  std::uint64_t exchange = 0;    ///< the next one
+  std::uint64_t first = 0;       ///< index of the block's first vehicle in the train
+  std::vector<StateRow> states;  ///< [vehicle of the block], see VehicleBlock::Save
 };
 
 /// The state of a whole train and of its books at the beginning of an exchange. Vehicles are not tied to the
@@ -23,11 +25,14 @@ struct TrainCheckpoint {
   std::string scenario;             ///< what it is of, word for word
   std::uint64_t exchange = 0;       ///< the next one; follows a record
   std::uint64_t state_digest = 0;   ///< chained over all records so far
-  std::vector<double> vehicles;     ///< [vehicle][number], see VehicleBlock::Save
+  std::vector<StateRow> vehicles;   ///< [vehicle], see VehicleBlock::Save
   std::vector<double> connections;  ///< InTrainForces::Memory
   std::vector<double> summary;      ///< RunSummary::Memory
   Bytes output;                     ///< what the recorders of the run need to go on
 };
+
+/// @throws SnapshotError if there is not a row for each of so many vehicles
+void CheckRows(const std::vector<StateRow>& rows, int vehicles);
 
 /// As bytes: a mark, the format's version, the contents (little-endian, counts before arrays), a checksum.
 Bytes Encode(const BlockSnapshot& snapshot);

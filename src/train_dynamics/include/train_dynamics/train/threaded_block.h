@@ -9,11 +9,11 @@ namespace train_dynamics {
 
 class ThreadTeam;
 
-/// How many of `threads` threads make `vehicles` vehicles faster: a barrier costs about as much as eight wagons
-/// (a pack of lanes), or a thousand LTD vehicles.
-int UsefulThreads(VehicleModel model, int vehicles, int threads);
+/// How many of `threads` threads make the vehicles [first, first + count) of a scenario's train faster: a barrier costs
+/// about as much as eight wagons (a pack of lanes), or a thousand LTD vehicles.
+int UsefulThreads(const ScenarioParams& scenario, int first, int count, int threads);
 
-/// A block whose vehicles are shared out over a fixed number of threads, in smaller blocks.
+/// A block whose vehicles are shared out over a fixed number of threads, in smaller blocks of about equal work.
 ///
 /// The same bits for any number of threads: a vehicle's step depends on nothing but its own state and loads.
 class ThreadedBlock : public VehicleBlock {
@@ -27,9 +27,8 @@ class ThreadedBlock : public VehicleBlock {
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override;
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override;
-  int NumbersPerVehicle() const override { return shares_.front().block->NumbersPerVehicle(); }
-  void Save(double* state) const override;
-  void Restore(const double* state) override;
+  void Save(StateRow* rows) const override;
+  void Restore(const StateRow* rows) override;
   VehicleFault FindFault() const override;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "train_dynamics/train/brake_pressures.h"
@@ -15,18 +16,17 @@ namespace train_dynamics {
 
 /// The train at the end of an exchange, as it is recorded. Forces are those of the interval that ended.
 struct TrainRecord {
-  double time_s;
-  std::uint64_t exchange;  ///< number of exchanges so far
-  double mean_speed_mps;   ///< of the vehicles' momentum
-  double mean_position_m;  ///< of the vehicles' masses
-  const ExchangeReply& vehicles;
-  const std::vector<double>& acceleration_mps2;     ///< mean over the record interval; NaN at time 0
-  const std::vector<double>& coupler_force_n;       ///< [vehicles + 1] as in ExchangeRequest
-  const std::vector<double>& coupler_extension_m;   ///< [connections]
-  const std::vector<double>& cylinder_pressure_pa;  ///< at time_s
-  const std::vector<double>& held_pressure_pa;      ///< of the interval that ended
-  std::uint64_t state_digest;                       ///< chained over all records so far
-  const EnergyLedger* ledger;                       ///< null where none is due
+  double time_s = 0.0;
+  std::uint64_t exchange = 0;    ///< number of exchanges so far
+  double mean_speed_mps = 0.0;   ///< of the vehicles' momentum
+  double mean_position_m = 0.0;  ///< of the vehicles' masses
+  VehicleRecords vehicles;
+  std::vector<double> acceleration_mps2;     ///< [vehicle] mean over the record interval; NaN at time 0
+  LoadArrays held;                           ///< the loads of the interval that ended
+  std::vector<double> coupler_extension_m;   ///< [connection]
+  std::vector<double> cylinder_pressure_pa;  ///< [vehicle] at time_s
+  std::uint64_t state_digest = 0;            ///< chained over all records so far
+  std::optional<EnergyLedger> ledger;        ///< where one is due
 };
 
 /// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.
@@ -79,9 +79,9 @@ class TrainMaster {
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
   ExchangeReply reply_;
+  TrainRecord record_;  ///< the last one; keeps its memory from record to record
   std::vector<double> mass_kg_;
-  std::vector<double> record_pressure_pa_, extension_m_;
-  std::vector<double> last_speed_mps_, acceleration_mps2_;
+  std::vector<double> last_speed_mps_;
   std::vector<Observer> observers_;
 };
 

@@ -9,7 +9,8 @@
 namespace train_dynamics {
 
 /// A contiguous block of vehicles that one thread or one process integrates. The first of the two seams with
-/// virtual functions: one call per block and exchange, whatever the vehicle model.
+/// virtual functions: one call per block and exchange, whatever models its vehicles
+/// are of.
 class VehicleBlock {
  public:
   virtual ~VehicleBlock() = default;
@@ -21,21 +22,19 @@ class VehicleBlock {
   /// Replies with the present state, as a record.
   virtual void Report(int offset, bool with_energy, ExchangeReply& reply) const = 0;
 
-  /// How many numbers the state of one vehicle has.
-  virtual int NumbersPerVehicle() const = 0;
-  /// Writes the state, NumbersPerVehicle() of each vehicle.
-  virtual void Save(double* state) const = 0;
-  /// Takes such a state back.
-  virtual void Restore(const double* state) = 0;
+  /// Writes the state of each vehicle to its row.
+  virtual void Save(StateRow* rows) const = 0;
+  /// Takes such rows back. @throws SnapshotError if they are not of these vehicles
+  virtual void Restore(const StateRow* rows) = 0;
 
   /// The first vehicle of the block whose state is not finite or absurd, if any.
   virtual VehicleFault FindFault() const = 0;
 };
 
-/// @throws SnapshotError if a snapshot has not the numbers of `vehicles` vehicles of the block's kind
-void CheckSnapshotSize(const std::vector<double>& snapshot, const VehicleBlock& block, int vehicles);
+/// The most numbers that the state of a vehicle of this program can have.
+int MostStateNumbers();
 
-/// Builds the vehicles [first, first + count) of a scenario's train at their start state.
+/// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model.
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count);
 

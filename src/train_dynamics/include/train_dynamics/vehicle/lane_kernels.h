@@ -6,18 +6,11 @@
 #include "train_dynamics/brake/air_brake.h"
 #include "train_dynamics/coupler/connection.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
+#include "train_dynamics/vehicle/vehicle_loads.h"
+#include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wagon.h"
 
 namespace train_dynamics {
-
-/// The arrays of an exchange from the place of one vehicle on, one number per vehicle.
-struct VehicleArrays {
-  const double* front_coupler_n;
-  const double* rear_coupler_n;
-  const double* cylinder_pressure_pa;
-  double* head_displacement_m;  ///< of the coupler heads since the start
-  double* head_velocity_mps;
-};
 
 /// Cylinder pressures by recurrence, one number per vehicle.
 struct GapArrays {
@@ -31,16 +24,18 @@ struct GapArrays {
 /// of the vehicle's State and Output; 64-byte aligned.
 struct LaneKernels {
   /// Advances `packs` packs of vehicles of one type by `steps` steps of dt.
-  /// @param outputs  what the last step shows; may be null
+  /// @param loads, reply  of the first vehicle; those of the others follow
+  /// @param outputs       what the last step shows; may be null
   /// @return whether all lanes are sound
   template <class Vehicle>
-  using StepPacks = bool (*)(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                             int packs, const VehicleArrays& arrays, std::byte* states, std::byte* outputs);
+  using StepPacks = bool (*)(const Vehicle& vehicle, const Track& track, double dt, int steps,
+                             int packs, const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states,
+                             std::byte* outputs);
 
-  /// What a record holds of a pack.
+  /// What a pack replies, and what a record holds of it.
   template <class Vehicle>
   using RecordPack = void (*)(const Vehicle& vehicle, const std::byte* state, const std::byte* output,
-                              const RecordArrays& record);
+                              const ReplyPlaces& reply, const RecordPlaces& record);
 
   const char* instruction_set;
   int lanes;

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
-#include <limits>
+#include <cstddef>
 
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/work.h"
@@ -36,6 +37,10 @@ struct LtdState {
   T v_mps{};
   VehicleWork<T> work;
 };
+
+static_assert(offsetof(LtdState<double>, x_m) == 1 * sizeof(double) &&
+                  offsetof(LtdState<double>, v_mps) == 2 * sizeof(double),
+              "LtdVehicle::kDigestedFields counts the numbers before x_m and v_mps");
 
 /// What an LTD vehicle shows of its last step, for records.
 template <class T>
@@ -72,7 +77,7 @@ struct LtdVehicle {
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
 /// @param output  receives what the step shows; may be null
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output = nullptr);
 
 /// Displacement of the coupler heads since the start [m]: the vehicle's own, which is rigid.
@@ -88,13 +93,16 @@ T CouplerHeadVelocity(const LtdVehicle& /*vehicle*/, const LtdState<T>& s) {
 
 template <class T>
 VehicleRecord<T> RecordOf(const LtdVehicle& /*vehicle*/, const LtdState<T>& s, const LtdOutput<T>& out) {
-  const T none = T(std::numeric_limits<double>::quiet_NaN());
-  return {s.x_m, s.v_mps, s.origin_m + s.x_m, s.v_mps, out.shoe_force_n, none, none};
+  VehicleRecord<T> record;
+  record.position_m = s.origin_m + s.x_m;
+  record.speed_mps = s.v_mps;
+  record.shoe_force_n = out.shoe_force_n;
+  return record;
 }
 
 /// Whether the speed is one that a vehicle can have; false for anything that is not a number.
 template <class T>
-MaskOf<T> IsSound(const LtdState<T>& s) {
+MaskOf<T> IsSound(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const LtdState<T>& s) {
   return Abs(s.v_mps) < T(absurd::kSpeed);
 }
 
@@ -107,7 +115,7 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output) {
   const T v0 = s.v_mps;
   const double drift = vehicle.integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;

@@ -17,18 +17,25 @@ class VehicleBatch {
   using State = typename Vehicle::template State<double>;
   using Output = typename Vehicle::template Output<double>;
 
+  static_assert(kIsRowOfNumbers<Vehicle::template State> && kIsRowOfNumbers<Vehicle::template Output>,
+                "state and output of a vehicle are handled as rows of numbers");
+
   VehicleBatch(const Vehicle& vehicle, const LaneKernels& kernels, const std::vector<State>& states);
 
   int size() const { return size_; }
   const Vehicle& vehicle() const { return vehicle_; }
 
-  /// Advances all vehicles by `steps` steps. @param arrays  of the first vehicle; those of the others follow
+  /// Advances all vehicles by `steps` steps. @param loads, reply  of the first vehicle; those of the others follow
   /// @param with_output  keep what the last step shows
   /// @return whether all vehicles are sound
-  bool Advance(const TrackParams& track, double dt, int steps, const VehicleArrays& arrays, bool with_output);
+  bool Advance(const Track& track, double dt, int steps, const LoadPlaces& loads,
+               const ReplyPlaces& reply, bool with_output);
 
-  /// What a record holds of every vehicle, after an Advance with output.
-  void Record(const RecordArrays& record) const;
+  /// What every vehicle replies, and what a record holds of it, after an Advance with output.
+  void Record(const ReplyPlaces& reply, const RecordPlaces& record) const;
+
+  /// Numbers in the state of a vehicle.
+  static constexpr int kNumbers = sizeof(State) / sizeof(double);
 
   State StateOf(int i) const;
   /// What vehicle i showed of the last step with output; NaN before.

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wheelset_slip.h"
@@ -83,6 +85,11 @@ struct WagonState {
   BodyVector<T, kPerBogie> velocity;
   VehicleWork<T> work;
 };
+
+static_assert(offsetof(WagonState<double>, position) == sizeof(double) &&
+                  offsetof(WagonState<double>, velocity) ==
+                      offsetof(WagonState<double>, position) + 3 * kBodies * sizeof(double),
+              "Wagon::kDigestedFields counts the numbers before positions and velocities");
 
 /// What a wagon shows of its last step, for records.
 template <class T, int kPerBogie = 2>
@@ -291,7 +298,7 @@ T CouplerHeadVelocity(const BogieVehicle<kPerBogie>& wagon, const WagonState<T, 
 }
 
 template <class T, int kPerBogie>
-VehicleRecord<T> RecordOf(const BogieVehicle<kPerBogie>& wagon, const WagonState<T, kPerBogie>& s,
+VehicleRecord<T> RecordOf(const BogieVehicle<kPerBogie>& /*wagon*/, const WagonState<T, kPerBogie>& s,
                           const WagonOutput<T, kPerBogie>& out) {
   T shoes(0.0), wheels(0.0), creepage(0.0);
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -299,23 +306,63 @@ VehicleRecord<T> RecordOf(const BogieVehicle<kPerBogie>& wagon, const WagonState
     wheels = wheels + out.creep_force_n[i];
     creepage = Select(Abs(out.creepage[i]) <= Abs(creepage), creepage, out.creepage[i]);  // keeps NaN
   }
-  return {CouplerHeadDisplacement(wagon, s),
-          CouplerHeadVelocity(wagon, s),
-          s.origin_m + s.position.x[kCarbody],
-          s.velocity.x[kCarbody],
-          shoes,
-          wheels,
-          creepage};
+  VehicleRecord<T> record;
+  record.position_m = s.origin_m + s.position.x[kCarbody];
+  record.speed_mps = s.velocity.x[kCarbody];
+  record.shoe_force_n = shoes;
+  record.wheel_force_n = wheels;
+  record.creepage = creepage;
+  return record;
 }
 
-/// Whether every body is where and as fast as a body can be; false for anything that is not a number.
+/// Height and pitch of each body over the rail under it, from the state in which springs are unloaded.
+template <class T, int kPerBogie = 2>
+struct OverRail {
+  std::array<T, kBodiesOf<kPerBogie>> z, pitch;
+};
+
+/// The rail under a wheelset is at its wheels; the rail under a bogie (its bolster and frame) is the line between those
+/// under its outer wheelsets, the rail under the carbody the line between the middles of those under its bogies. A pitch
+/// counts from the pitch of that line; that of a wheelset is its rotation and counts from nowhere.
 template <class T, int kPerBogie>
-MaskOf<T> IsSound(const WagonState<T, kPerBogie>& s) {
+OverRail<T, kPerBogie> OverRailOf(const BogieVehicle<kPerBogie>& w, const Track& track,
+                                  const WagonState<T, kPerBogie>& s) {
+  OverRail<T, kPerBogie> over{s.position.z, s.position.pitch};
+  if (!track.has_dips) return over;
+  std::array<T, kWheelsetsOf<kPerBogie>> rail;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int b = kWheelset1 + i;
+    const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
+    rail[i] = RailHeightUnder(track, at).height;
+    over.z[b] = over.z[b] - rail[i];
+  }
+  std::array<T, kBogies> middle;
+  for (int b = 0; b < kBogies; ++b) {
+    const int first = kPerBogie * b, last = first + kPerBogie - 1;
+    const T front = rail[first], rear = rail[last];
+    const T pitch = (rear - front) * (1.0 / (w.wheelset_offset_m[first] - w.wheelset_offset_m[last]));
+    middle[b] = 0.5 * (front + rear);
+    for (const int body : {kFrontBolster + b, kFrontFrame + b}) {
+      over.z[body] = over.z[body] - middle[b];
+      over.pitch[body] = over.pitch[body] - pitch;
+    }
+  }
+  over.z[kCarbody] = over.z[kCarbody] - 0.5 * (middle[0] + middle[1]);
+  over.pitch[kCarbody] =
+      over.pitch[kCarbody] - (middle[1] - middle[0]) * (1.0 / (w.bogie_offset_m[0] - w.bogie_offset_m[1]));
+  return over;
+}
+
+/// Whether every body is where and as fast as a body can be; false for anything that is not a number. Heights and
+/// pitches count from the rail, so that a train in a deep, gentle valley is sound.
+template <class T, int kPerBogie>
+MaskOf<T> IsSound(const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<T, kPerBogie>& s) {
+  const OverRail<T, kPerBogie> over = OverRailOf(w, track, s);
   MaskOf<T> sound = Abs(s.velocity.x[kCarbody]) < T(absurd::kSpeed);
   for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
     sound = sound & (Abs(s.velocity.x[b]) < T(absurd::kSpeed)) & (Abs(s.velocity.z[b]) < T(absurd::kSpeed)) &
-            (Abs(s.position.z[b]) < T(absurd::kMovement)) &
-            (b < kWheelset1 ? Abs(s.position.pitch[b]) < T(absurd::kPitch)
+            (Abs(over.z[b]) < T(absurd::kMovement)) &
+            (b < kWheelset1 ? Abs(over.pitch[b]) < T(absurd::kPitch)
                             : Abs(s.velocity.pitch[b]) < T(absurd::kRotation));
   }
   return sound;
@@ -327,7 +374,7 @@ double KineticEnergy(const BogieVehicle<kPerBogie>& wagon, const WagonState<doub
 
 /// Elastic energy of all elements and contacts plus the bodies' weight times their height z [J].
 template <int kPerBogie>
-double PotentialEnergy(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track,
+double PotentialEnergy(const BogieVehicle<kPerBogie>& wagon, const Track& track,
                        const WagonState<double, kPerBogie>& state);
 
 }  // namespace train_dynamics

@@ -21,7 +21,7 @@ namespace train_dynamics {
 ///
 /// @param output  receives the step's contact and friction forces; may be null
 template <class T, int kPerBogie>
-void StepWagon(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track, const VehicleLoads<T>& loads,
+void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -39,28 +39,28 @@ void Drift(const BodyVector<T, kPerBogie>& v, double h, BodyVector<T, kPerBogie>
 /// Contact forces between the wheelsets and the rail at the step's middle.
 template <class T, int kPerBogie = 2>
 struct RailForces {
-  std::array<T, kWheelsetsOf<kPerBogie>> normal{};    ///< N of both wheels [N]
-  std::array<T, kWheelsetsOf<kPerBogie>> damping{};   ///< the part of N that is not elastic [N]
-  std::array<T, kWheelsetsOf<kPerBogie>> slope{};     ///< of the rail [-]
-  std::array<T, kWheelsetsOf<kPerBogie>> friction{};  ///< mu0 [-]
+  std::array<T, kWheelsetsOf<kPerBogie>> normal{};   ///< N of both wheels [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> damping{};  ///< the part of N that is not elastic [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> slope{};    ///< of the rail [-]
+  std::array<RailSurface<T>, kWheelsetsOf<kPerBogie>> surface;
 };
 
 template <class T, int kPerBogie>
-RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const TrackParams& track,
+RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
                                        const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   RailForces<T, kPerBogie> rail;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
-    const RailPoint<T> point = RailUnder(track, at, w.params.wheel_rail.adhesion.friction_coefficient);
+    const RailHeight<T> point = RailHeightUnder(track, at);
     const T penetration = point.height - s.position.z[b];
     const T rate = point.slope * s.velocity.x[b] - s.velocity.z[b];
     rail.normal[i] =
         2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
     rail.damping[i] = rail.normal[i] - 2.0 * OneSidedForce(contact.stiffness_n_per_m, 0.0, penetration, rate);
     rail.slope[i] = point.slope;
-    rail.friction[i] = point.friction;
+    rail.surface[i] = RailSurfaceUnder(track, at, w.params.wheel_rail.adhesion);
   }
   return rail;
 }
@@ -132,7 +132,7 @@ struct OuterForces {
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
 template <class T, int kPerBogie>
-OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const TrackParams& track,
+OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& track,
                              const VehicleLoads<T>& loads, const WagonState<T, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const T speed = s.velocity.x[kCarbody];
@@ -176,6 +176,33 @@ struct WheelsetStep {
   T creep{}, contact{};  ///< energy lost in creep and in the contacts' dampers [J]
 };
 
+/// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
+/// @param shape_of  what the law of a surface takes beside mu0: of one surface for all lanes, or by lane
+template <class T, int kPerBogie, class ShapeOf>
+std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
+    const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
+    const BodyVector<T, kPerBogie>& v0, const ShapeOf& shape_of) {
+  using Law = decltype(FreezeCreepLaw(shape_of(rail.surface[0]), 0.0, T(), T(), T(), 0.0));
+  std::array<Law, kWheelsetsOf<kPerBogie>> law;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const RailSurface<T>& surface = rail.surface[i];
+    law[i] = FreezeCreepLaw(shape_of(surface), w.creep_stiffness, rail.normal[i], surface.friction,
+                            v0.x[kWheelset1 + i], w.params.wheel_rail.creepage_regularisation_speed_mps);
+  }
+  return StepRolling(w.rolling, law, rolling, dt);
+}
+
+/// RollOn where vehicles side by side meet different surfaces. A function of its own, so that the step of all
+/// others does not grow.
+template <class T, int kPerBogie>
+[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixedSurfaces(
+    const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
+    const BodyVector<T, kPerBogie>& v0) {
+  return RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) { return ShapeOf(surface); });
+}
+
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
 template <class T, int kPerBogie>
@@ -190,12 +217,11 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
   const BrakeRiggingParams& rigging = w.params.brake_rigging;
   const bool by_tread = rigging.friction_speed == FrictionSpeed::kTread;
   WheelsetStep<T, kPerBogie> step;
-  std::array<CreepLaw<T>, kWheelsetsOf<kPerBogie>> law;
   std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
+  bool mixed = false;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    law[i] =
-        FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
+    mixed |= rail.surface[i].adhesion == nullptr;
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
     T shoes = outer.shoes, holding_shoes = shoes;
     if (by_tread) {
@@ -208,7 +234,10 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
                   r * (holding_shoes + outer.rolling + outer.dynamic_brake + outer.curving)};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
-      StepRolling(w.rolling, law, rolling, dt);
+      mixed ? RollOnMixedSurfaces(w, rail, rolling, dt, v0)
+            : RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) -> const AdhesionParams& {
+                return *surface.adhesion;
+              });
 
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
@@ -334,8 +363,8 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
 }
 
 template <class T, int kPerBogie>
-void StepWagon(const BogieVehicle<kPerBogie>& w, const TrackParams& track, const VehicleLoads<T>& loads,
-               double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
   const BodyVector<T, kPerBogie> v0 = s.velocity;
   BodyVector<T, kPerBogie>& v1 = s.velocity;
   Drift(v0, 0.5 * dt, s.position);

@@ -1,30 +1,53 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+
+#include "train_dynamics/vehicle/field_list.h"
+
+/// The elements of a vehicle that take energy out of it, each with its account in the energy ledger:
+///   X(enumerator, name)
+/// In messages: EnergyLedger.element, and the order of RankRecord.dissipated_j.
+#define TRAIN_DYNAMICS_DISSIPATIONS(X)      \
+  X(kWheelRailCreep, wheel_rail_creep)      \
+  X(kWheelRailNormal, wheel_rail_normal)    \
+  X(kAdaptorPads, adaptor_pads)             \
+  X(kFrictionWedges, friction_wedges)       \
+  X(kBolsterGuides, bolster_guides)         \
+  X(kCentrePlates, centre_plates)           \
+  X(kBrakeShoes, brake_shoes)               \
+  X(kDynamicBrake, dynamic_brake)           \
+  X(kRollingResistance, rolling_resistance) \
+  X(kCurvingResistance, curving_resistance) \
+  X(kAirDrag, air_drag)                     \
+  X(kNestDampers, nest_dampers)
+
+/// The energies of one vehicle [J], due where a record has a ledger:
+///   X(name, numbers of each vehicle, meaning)
+/// In messages: the arrays of this name in RankRecord.msg.
+#define TRAIN_DYNAMICS_VEHICLE_ENERGIES(X)                                                  \
+  X(kinetic_j, 1, "translation and rotation, >= 0")                                         \
+  X(potential_j, 1, "stored in springs, contacts and the bodies' heights")                  \
+  X(gravity_work_j, 1, "done on the vehicle by its weight along the grade since the start") \
+  X(traction_work_j, 1, "done on the vehicle by its traction force since the start")        \
+  X(dissipated_j, kDissipations, "since the start, by each element that dissipates")
 
 namespace train_dynamics {
 
-/// The elements of a vehicle that take energy out of it. Each has an account in the energy ledger.
+#define TRAIN_DYNAMICS_ENUMERATOR(enumerator, name) enumerator,
+#define TRAIN_DYNAMICS_NAME(enumerator, name) #name,
+
 enum Dissipation {
-  kWheelRailCreep,
-  kWheelRailNormal,
-  kAdaptorPads,
-  kFrictionWedges,
-  kBolsterGuides,
-  kCentrePlates,
-  kBrakeShoes,
-  kDynamicBrake,
-  kRollingResistance,
-  kCurvingResistance,
-  kAirDrag,
-  kNestDampers,
-  kDissipations  ///< their number
+  TRAIN_DYNAMICS_DISSIPATIONS(TRAIN_DYNAMICS_ENUMERATOR)  //
+  kDissipations                                           ///< their number
 };
 
 inline constexpr std::array<const char*, kDissipations> kDissipationNames = {
-    "wheel_rail_creep",   "wheel_rail_normal",  "adaptor_pads", "friction_wedges",
-    "bolster_guides",     "centre_plates",      "brake_shoes",  "dynamic_brake",
-    "rolling_resistance", "curving_resistance", "air_drag",           "nest_dampers"};
+    TRAIN_DYNAMICS_DISSIPATIONS(TRAIN_DYNAMICS_NAME)};
+
+#undef TRAIN_DYNAMICS_ENUMERATOR
+#undef TRAIN_DYNAMICS_NAME
 
 /// Work done on and by a vehicle since the start [J].
 template <class T>
@@ -34,18 +57,61 @@ struct VehicleWork {
   T traction{};                               ///< done on the vehicle by its traction force
 };
 
-/// What acts on a vehicle from outside its own equations; held over an exchange interval.
-///
-/// Paper Eq 1: F_c1 + F_c2 + F_t + F_db + F_ab + F_cr; propulsion resistance and gravity are the vehicle's
-/// own.
-template <class T>
-struct VehicleLoads {
-  T front_coupler_n{};       ///< tension positive: pulls forward
-  T rear_coupler_n{};        ///< tension positive: pulls backward
-  T cylinder_pressure_pa{};  ///< of the air brake
-  T traction_n{};            ///< at the wheel rims, forward positive
-  T dynamic_brake_n{};       ///< at the wheel rims, >= 0, opposes the rotation
-  T curving_resistance_n{};  ///< >= 0, opposes the motion
+#define TRAIN_DYNAMICS_VALUE(name, numbers, meaning) Numbers<double, numbers> name{};
+
+struct VehicleEnergy {
+  TRAIN_DYNAMICS_VEHICLE_ENERGIES(TRAIN_DYNAMICS_VALUE)
 };
+
+#undef TRAIN_DYNAMICS_VALUE
+#define TRAIN_DYNAMICS_CALL(name, numbers, meaning) \
+  function(FieldInfo{#name, "J", meaning, numbers}, structs.name...);
+
+/// Calls function(FieldInfo, field, field ...) for each of a vehicle's energies; as ForEachRecordField.
+template <class Function, class... Structs>
+void ForEachEnergy(Function&& function, Structs&... structs) {
+  TRAIN_DYNAMICS_VEHICLE_ENERGIES(TRAIN_DYNAMICS_CALL)
+}
+
+#undef TRAIN_DYNAMICS_CALL
+
+/// The numbers of a field, one beside the other.
+inline double* FirstOf(double& number) { return &number; }
+inline const double* FirstOf(const double& number) { return &number; }
+template <std::size_t n>
+double* FirstOf(std::array<double, n>& numbers) {
+  return numbers.data();
+}
+template <std::size_t n>
+const double* FirstOf(const std::array<double, n>& numbers) {
+  return numbers.data();
+}
+
+/// Gives the arrays of a message their sizes for so many vehicles.
+template <class Arrays>
+void ResizeEnergies(std::size_t vehicles, Arrays& arrays) {
+  ForEachEnergy([vehicles](const FieldInfo& field, auto& array) { array.resize(vehicles * field.numbers); },
+                arrays);
+}
+
+/// Between the energies of a vehicle and its place in the arrays of a message.
+template <class Arrays>
+void PutEnergy(const VehicleEnergy& energy, std::size_t vehicle, Arrays& arrays) {
+  ForEachEnergy(
+      [vehicle](const FieldInfo& field, const auto& numbers, auto& array) {
+        std::copy_n(FirstOf(numbers), field.numbers, &array[vehicle * field.numbers]);
+      },
+      energy, arrays);
+}
+template <class Arrays>
+VehicleEnergy GetEnergy(std::size_t vehicle, const Arrays& arrays) {
+  VehicleEnergy energy;
+  ForEachEnergy(
+      [vehicle](const FieldInfo& field, auto& numbers, const auto& array) {
+        std::copy_n(&array[vehicle * field.numbers], field.numbers, FirstOf(numbers));
+      },
+      energy, arrays);
+  return energy;
+}
 
 }  // namespace train_dynamics

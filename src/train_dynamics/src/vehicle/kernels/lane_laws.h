@@ -10,56 +10,93 @@
 namespace train_dynamics {
 
 template <class T, int kPerBogie>
-void Step(const BogieVehicle<kPerBogie>& wagon, const TrackParams& track, const VehicleLoads<T>& loads,
-          double dt, WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
+void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
+          WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
   StepWagon(wagon, track, loads, dt, state, output);
 }
 
 template <class T>
-void Step(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
   StepLtd(vehicle, track, loads, dt, state, output);
 }
 
 template <class T, class Vehicle>
-[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
-                                int packs, const VehicleArrays& arrays, std::byte* states,
-                                std::byte* outputs) {
+VehicleReply<T> ReplyOf(const Vehicle& vehicle, const typename Vehicle::template State<T>& state) {
+  VehicleReply<T> reply;
+  reply.head_displacement_m = CouplerHeadDisplacement(vehicle, state);
+  reply.head_velocity_mps = CouplerHeadVelocity(vehicle, state);
+  return reply;
+}
+
+/// Writes a quantity of a pack of vehicles to the places from its first vehicle on.
+template <class T>
+void StoreNumbers(const T& value, double* place) {
+  Store(value, place);
+}
+template <class T, std::size_t n>
+void StoreNumbers(const std::array<T, n>& values, double* place) {
+  for (std::size_t i = 0; i < n; ++i) {
+    double lanes[kLanesOf<T>];
+    Store(values[i], lanes);
+    for (int lane = 0; lane < kLanesOf<T>; ++lane) place[lane * n + i] = lanes[lane];
+  }
+}
+
+/// Loads of a pack from the place of its first vehicle on. What acts on no vehicle of the train is zero.
+template <class T>
+VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
+  VehicleLoads<T> loads{};
+  loads.front_coupler_n = Load<T>(places.front_coupler_n + first);
+  loads.rear_coupler_n = Load<T>(places.rear_coupler_n + first);
+  ForEachLoad(
+      [first](const LoadInfo& /*load*/, const double* place, T& value) {
+        if (place != nullptr) value = Load<T>(place + first);
+      },
+      places, loads);
+  return loads;
+}
+
+template <class T, class Vehicle>
+[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
+                                const LoadPlaces& load_places, const ReplyPlaces& reply_places,
+                                std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
+  static_assert(sizeof(State) == kLanesOf<T> * sizeof(typename Vehicle::template State<double>) &&
+                    sizeof(Output) == kLanesOf<T> * sizeof(typename Vehicle::template Output<double>),
+                "a pack lies in memory as [field][lane]");
   MaskOf<T> sound = T(0.0) == T(0.0);
   for (int i = 0; i < packs; ++i) {
     const int first = i * kLanesOf<T>;
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
-    VehicleLoads<T> loads{};
-    loads.front_coupler_n = Load<T>(arrays.front_coupler_n + first);
-    loads.rear_coupler_n = Load<T>(arrays.rear_coupler_n + first);
-    loads.cylinder_pressure_pa = Load<T>(arrays.cylinder_pressure_pa + first);
+    const VehicleLoads<T> loads = LoadsAt<T>(load_places, first);
     for (int step = 1; step < steps; ++step) {
       Step(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
     }
     Step(vehicle, track, loads, dt, pack, output);
-    Store(CouplerHeadDisplacement(vehicle, pack), arrays.head_displacement_m + first);
-    Store(CouplerHeadVelocity(vehicle, pack), arrays.head_velocity_mps + first);
-    sound = sound & IsSound(pack);
+    const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
+    ForEachReplyField([first](const RecordInfo& field, const auto& value,
+                              double* place) { StoreNumbers(value, place + first * field.numbers); },
+                      reply, reply_places);
+    sound = sound & IsSound(vehicle, track, pack);
   }
   return AllOf(sound);
 }
 
 template <class T, class Vehicle>
 void RecordPack(const Vehicle& vehicle, const std::byte* state, const std::byte* output,
-                const RecordArrays& record) {
+                const ReplyPlaces& reply_places, const RecordPlaces& record_places) {
   const auto& pack = *reinterpret_cast<const typename Vehicle::template State<T>*>(state);
   const auto& shown = *reinterpret_cast<const typename Vehicle::template Output<T>*>(output);
-  const VehicleRecord<T> r = RecordOf(vehicle, pack, shown);
-  Store(r.head_displacement_m, record.head_displacement_m);
-  Store(r.head_velocity_mps, record.head_velocity_mps);
-  Store(r.position_m, record.position_m);
-  Store(r.speed_mps, record.speed_mps);
-  Store(r.shoe_force_n, record.shoe_force_n);
-  Store(r.wheel_force_n, record.wheel_force_n);
-  Store(r.creepage, record.creepage);
+  const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
+  const VehicleRecord<T> record = RecordOf(vehicle, pack, shown);
+  const auto store = [](const RecordInfo& /*field*/, const auto& value, double* place) {
+    StoreNumbers(value, place);
+  };
+  ForEachReplyField(store, reply, reply_places);
+  ForEachRecordField(store, record, record_places);
 }
 
 template <class T>
@@ -135,19 +172,21 @@ void CloseCylinderGaps(int steps, int count, const GapArrays& at, double* pressu
 
 template <class T>
 constexpr LaneKernels KernelsOver(const char* instruction_set) {
-  return {instruction_set,
-          kLanesOf<T>,
-          &StepPacks<T, Wagon>,
-          &StepPacks<T, SixAxleVehicle>,
-          &StepPacks<T, LtdVehicle>,
-          &RecordPack<T, Wagon>,
-          &RecordPack<T, SixAxleVehicle>,
-          &RecordPack<T, LtdVehicle>,
-          &ConnectionForces<T>,
-          &ConnectionWork<T>,
-          &CylinderPressures<T>,
-          &CylinderGaps<T>,
-          &CloseCylinderGaps<T>};
+  LaneKernels kernels{};
+  kernels.instruction_set = instruction_set;
+  kernels.lanes = kLanesOf<T>;
+  kernels.step_wagons = &StepPacks<T, Wagon>;
+  kernels.step_six_axle = &StepPacks<T, SixAxleVehicle>;
+  kernels.step_ltd = &StepPacks<T, LtdVehicle>;
+  kernels.record_wagons = &RecordPack<T, Wagon>;
+  kernels.record_six_axle = &RecordPack<T, SixAxleVehicle>;
+  kernels.record_ltd = &RecordPack<T, LtdVehicle>;
+  kernels.connection_forces = &ConnectionForces<T>;
+  kernels.connection_work = &ConnectionWork<T>;
+  kernels.cylinder_pressures = &CylinderPressures<T>;
+  kernels.cylinder_gaps = &CylinderGaps<T>;
+  kernels.close_cylinder_gaps = &CloseCylinderGaps<T>;
+  return kernels;
 }
 
 extern const LaneKernels kScalarLaneKernels;

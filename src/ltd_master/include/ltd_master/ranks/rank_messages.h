@@ -1,0 +1,46 @@
+#pragma once
+
+#include <train_brake_msgs/Configure.h>
+#include <train_brake_msgs/Step.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/train/lockstep.h"
+#include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/scenario.h"
+
+namespace ltd_master {
+
+/// When something went wrong, as messages name it.
+inline constexpr const char* kConfiguration = "configuration";
+std::string ExchangeText(std::uint64_t exchange);
+
+/// The requests to and the replies from all ranks, and how the arrays of the whole train go into them and
+/// come out. Replies are checked: what does not fit is thrown as a RankFailure.
+class RankMessages {
+ public:
+  RankMessages(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id,
+               const train_dynamics::ScenarioParams& scenario);
+
+  std::vector<train_brake_msgs::Configure> configure;  ///< [rank]
+  std::vector<train_brake_msgs::Step> step;            ///< [rank]
+
+  /// Where `configure` begins. @param snapshot  [vehicle]; empty: time 0
+  /// @throws SnapshotError if it is not one of so many vehicles
+  void BeginAt(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot);
+  void Unpack(train_dynamics::ExchangeReply& reply) const;  ///< the replies of `configure`
+
+  void Pack(const train_dynamics::ExchangeRequest& request);
+  /// One rank's part of a request.
+  void Pack(const train_dynamics::ExchangeRequest& request, int rank,
+            train_brake_msgs::StepRequest& part) const;
+  void Unpack(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) const;
+
+ private:
+  std::vector<train_dynamics::Rank> ranks_;
+  std::vector<train_dynamics::VehicleModel> models_;  ///< [vehicle]
+};
+
+}  // namespace ltd_master
