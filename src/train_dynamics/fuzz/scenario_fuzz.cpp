@@ -25,7 +25,7 @@ void Move(const ScenarioParams& scenario) {
     return;
   try {
     InProcessTransport vehicles(scenario, consist, 1);
-    TrainMaster master(scenario, consist, vehicles, AirBrakePressures(scenario, consist));
+    TrainMaster master(scenario, consist, vehicles, MakeBrakeSystem(scenario, consist));
     master.Start();
     for (int exchange = 0; exchange < 3 && !master.Done(); ++exchange) master.Exchange();
   } catch (const std::exception&) {  // parameters of which no vehicle or brake can be made, or a fault

@@ -49,11 +49,12 @@ std::string ConnectionLimits(const LoadedScenario& scenario) {
   std::vector<std::string> limits;
   for (const int type : scenario.consist.connection_type) {
     const ConnectionParams& connection = scenario.consist.connection_types[type];
-    const bool is_smooth = connection.kind == train_dynamics::ConnectionKind::kDraftGears &&
-                           connection.draft_gear.friction == train_dynamics::DraftGearFriction::kSmooth;
+    const bool depends_on_force = std::visit(
+        [](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce).depends_on_force; },
+        connection.Law());
     const std::string limit =
         fmt::format("{} stable to {:.3g} ms{}", connection.name,
-                    kMs * LongestStableExchange(connection, head_kg), is_smooth ? " at 900 kN" : "");
+                    kMs * LongestStableExchange(connection, head_kg), depends_on_force ? " at 900 kN" : "");
     if (std::find(limits.begin(), limits.end(), limit) == limits.end()) limits.push_back(limit);
   }
   return fmt::format("{}", fmt::join(limits, ", "));

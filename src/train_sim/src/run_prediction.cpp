@@ -93,10 +93,9 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
   const ScenarioParams& params = scenario.params;
   RunPrediction prediction;
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, threads);
-  train_dynamics::TrainMaster master(params, scenario.consist, vehicles,
-                                     [&](double time_s, std::vector<double>& pressure_pa) {
-                                       scenario.pressures(time_s + 0.5 * params.duration_s, pressure_pa);
-                                     });
+  train_dynamics::BrakeSystem brake = scenario.pressures;
+  brake.MoveAhead(0.5 * params.duration_s);
+  train_dynamics::TrainMaster master(params, scenario.consist, vehicles, std::move(brake));
   double queue_bytes = 0.0;
   master.AddObserver([&](const TrainRecord& record) {
     if (record.exchange > 0) return;

@@ -24,12 +24,14 @@ struct ConsistGroupParams {
   int vehicles_per_unit = 1;                         ///< 2: pairs, as of draw-bar wagons
   ConnectionParams unit_connection;                  ///< within a unit
   std::optional<VehicleModel> model = std::nullopt;  ///< none: that of the scenario
+  bool locomotive = false;                           ///< the vehicles are locomotives: shown as such
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
     v.Choice("model", model, kVehicleModels);
     v.Integer("count", count, Range{1, 100000, false, false});
+    v.Flag("locomotive", locomotive);
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
@@ -69,6 +71,7 @@ struct Consist {
 
   std::vector<VehicleParams> vehicle_types;  ///< one of each group, in their order
   std::vector<int> vehicle_type;             ///< [vehicle] index into vehicle_types and TrainParams::consist
+  std::vector<int> locomotives;              ///< indices of vehicles, ascending
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

@@ -1,16 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "train_dynamics/brake/air_brake.h"
-#include "train_dynamics/train/consist.h"
-#include "train_dynamics/train/scenario.h"
 
 namespace train_dynamics {
-
-/// Cylinder pressure of each vehicle [Pa] at a time [s].
-using PressureSource = std::function<void(double time_s, std::vector<double>& pressure_pa)>;
 
 /// The pressures of an air brake on a grid of times t_h = h dt, by recurrence.
 ///
@@ -28,10 +22,18 @@ class BrakePressures {
   /// @param steps  length of a window, >= 1
   BrakePressures(AirBrake brake, double dt_s, int steps);
 
+  /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
+  void OpenPipe(double time_s, int connection);
+
   /// @param time_s  the grid's time nearest to it is meant, t >= 0
-  void At(double time_s, std::vector<double>& pressure_pa);
+  void PressuresAt(double time_s, std::vector<double>& pressure_pa);
+
+  /// The pressures are a function of time and of where the pipe is open, which the connections remember.
+  template <class Function>
+  void ForEachField(Function&& /*field*/) {}
 
  private:
+  void TakePhases();
   void BeginWindow(long window);
 
   AirBrake brake_;
@@ -43,9 +45,5 @@ class BrakePressures {
   long at_ = 0;                                     ///< step that gap_pa_ is of
   std::vector<double> target_pa_, gap_pa_, decay_;  ///< [vehicle], filled up to whole packs of lanes
 };
-
-/// The air brake of a scenario, which must have one, as a source of pressures: at the middle of every exchange
-/// and at every record. A window is a record interval.
-PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist);
 
 }  // namespace train_dynamics

@@ -1,16 +1,25 @@
-#include "train_dynamics/train/brake_pressures.h"
+#include "train_dynamics/brake/brake_pressures.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include "train_dynamics/vehicle/lane_kernels.h"
+#include "train_dynamics/brake/brake_kernels.h"
 
 namespace train_dynamics {
 
 BrakePressures::BrakePressures(AirBrake brake, double dt_s, int steps)
     : brake_(std::move(brake)), dt_s_(dt_s), steps_(steps) {
+  TakePhases();
+}
+
+void BrakePressures::OpenPipe(double time_s, int connection) {
+  brake_.OpenPipe(time_s, connection);
+  TakePhases();
+}
+
+void BrakePressures::TakePhases() {
+  window_ = -1;
   const BrakePhases phases = brake_.Phases();
   begin_s_.assign(phases.begin_s, phases.begin_s + phases.phases * phases.stride);
   std::sort(begin_s_.begin(), begin_s_.end());
@@ -26,33 +35,26 @@ void BrakePressures::BeginWindow(long window) {
   by_law_ = next != begin_s_.end() && *next <= end_s;
   if (by_law_) return;
   const BrakePhases phases = brake_.Phases();
-  BestLaneKernels().cylinder_gaps(phases, begin_s, dt_s_, phases.stride,
-                                  {target_pa_.data(), gap_pa_.data(), decay_.data()});
+  BestBrakeKernels().cylinder_gaps(phases, begin_s, dt_s_, phases.stride,
+                                   {target_pa_.data(), gap_pa_.data(), decay_.data()});
 }
 
-void BrakePressures::At(double time_s, std::vector<double>& pressure_pa) {
+void BrakePressures::PressuresAt(double time_s, std::vector<double>& pressure_pa) {
   const long at = std::lround(time_s / dt_s_);
   const long window = at / steps_;
   if (window != window_ || at < at_) BeginWindow(window);
   const BrakePhases phases = brake_.Phases();
   pressure_pa.resize(phases.stride);  // whole packs of lanes
   if (by_law_) {
-    BestLaneKernels().cylinder_pressures(phases, static_cast<double>(at) * dt_s_, phases.stride,
-                                         pressure_pa.data());
-  } else {
-    BestLaneKernels().close_cylinder_gaps(static_cast<int>(at - at_), phases.stride,
-                                          {target_pa_.data(), gap_pa_.data(), decay_.data()},
+    BestBrakeKernels().cylinder_pressures(phases, static_cast<double>(at) * dt_s_, phases.stride,
                                           pressure_pa.data());
+  } else {
+    BestBrakeKernels().close_cylinder_gaps(static_cast<int>(at - at_), phases.stride,
+                                           {target_pa_.data(), gap_pa_.data(), decay_.data()},
+                                           pressure_pa.data());
     at_ = at;
   }
   pressure_pa.resize(brake_.vehicles());
-}
-
-PressureSource AirBrakePressures(const ScenarioParams& scenario, const Consist& consist) {
-  const auto pressures = std::make_shared<BrakePressures>(
-      AirBrake(*scenario.brake, scenario.commands, consist.centre_m), 0.5 * scenario.exchange_interval_s,
-      2 * static_cast<int>(scenario.ExchangesPerRecord()));
-  return [pressures](double time_s, std::vector<double>& pressure_pa) { pressures->At(time_s, pressure_pa); };
 }
 
 }  // namespace train_dynamics
