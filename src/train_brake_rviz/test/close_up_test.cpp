@@ -8,7 +8,6 @@
 namespace train_brake_rviz {
 namespace {
 
-using train_dynamics::BodyVector;
 using train_dynamics::kCarbody;
 using train_dynamics::kWheelset1;
 
@@ -19,7 +18,8 @@ class CloseUpTest : public testing::Test {
  protected:
   CloseUpTest()
       : vehicle_(train_dynamics::config::LoadVehicle(TRAIN_BRAKE_CONFIG_DIR "/vehicles/ore_wagon.yaml", {})),
-        at_rest_(train_dynamics::StaticEquilibrium(train_dynamics::Wagon(vehicle_), 0.0, 0.0).position),
+        wagon_at_rest_(train_dynamics::StaticEquilibrium(train_dynamics::Wagon(vehicle_), 0.0, 0.0).position),
+        at_rest_(CloseUp::BodiesOf(wagon_at_rest_)),
         close_up_(kArea, vehicle_, at_rest_, kExaggeration) {}
 
   Drawing Draw(const train_dynamics::WagonDetail* detail, double front_force_n = 0.0) const {
@@ -34,7 +34,8 @@ class CloseUpTest : public testing::Test {
   }
 
   train_dynamics::VehicleParams vehicle_;
-  BodyVector<double> at_rest_;
+  train_dynamics::BodyVector<double> wagon_at_rest_;
+  CloseUp::Bodies at_rest_;
   CloseUp close_up_;
 };
 
@@ -55,7 +56,7 @@ TEST_F(CloseUpTest, ProportionsAreThoseOfTheWagonAndTheFrontIsOnTheLeft) {
 
 TEST_F(CloseUpTest, WheelsTurnAsFarAsTheyRoll) {
   const double radius = vehicle_.wheelset.wheel_radius_m;
-  BodyVector<double> rolled = at_rest_;
+  CloseUp::Bodies rolled = at_rest_;
   rolled.pitch[kWheelset1] += M_PI / 2.0;  // a quarter forward: what was on top is in front
   const Point axle = close_up_.PlaceOf(rolled, kWheelset1, 0.0, 0.0);
   const Point mark = close_up_.PlaceOf(rolled, kWheelset1, 0.0, radius);
@@ -64,7 +65,7 @@ TEST_F(CloseUpTest, WheelsTurnAsFarAsTheyRoll) {
 }
 
 TEST_F(CloseUpTest, MotionAgainstRestIsExaggerated) {
-  BodyVector<double> moved = at_rest_;
+  CloseUp::Bodies moved = at_rest_;
   moved.z[kCarbody] -= 0.01;
   moved.pitch[kCarbody] += 0.002;  // nose down
   const Point before = close_up_.PlaceOf(at_rest_, kCarbody, 0.0, 0.0);
@@ -73,14 +74,14 @@ TEST_F(CloseUpTest, MotionAgainstRestIsExaggerated) {
   EXPECT_LT(close_up_.PlaceOf(moved, kCarbody, 3.0, 0.0).up,
             close_up_.PlaceOf(moved, kCarbody, -3.0, 0.0).up);
 
-  BodyVector<double> travelled = at_rest_;
+  CloseUp::Bodies travelled = at_rest_;
   for (double& x : travelled.x) x += 1234.5;  // the whole wagon: nothing moves against anything
   EXPECT_NEAR(before.right, close_up_.PlaceOf(travelled, kCarbody, 0.0, 0.0).right, 1e-9);
 }
 
 TEST_F(CloseUpTest, ArrowsAreAsLongAsTheForcesAreLarge) {
   train_dynamics::WagonDetail detail;
-  detail.position = at_rest_;
+  detail.position = wagon_at_rest_;
   detail.output.normal_force_n = {390e3, 390e3, 390e3, 390e3};
   detail.output.creep_force_n = {0.0, 0.0, 0.0, 20e3};
   const Drawing drawing = Draw(&detail);
@@ -104,7 +105,7 @@ TEST_F(CloseUpTest, CouplersPullOutwardsAndPushInwards) {
 
 TEST_F(CloseUpTest, ASlidingWheelIsSeenAtOnce) {
   train_dynamics::WagonDetail detail;
-  detail.position = at_rest_;
+  detail.position = wagon_at_rest_;
   EXPECT_EQ(0.0, AreaOf(Draw(&detail), palette::kVermillion));
   detail.output.creepage[2] = 1.0;  // locked
   const Rectangle wheel = ExtentOf(Draw(&detail), palette::kVermillion);

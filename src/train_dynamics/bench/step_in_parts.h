@@ -16,8 +16,10 @@ class StepInParts {
     Suspension();
     Contact();
     BrakeAndResistance();
-    Bodies();
+    v1_ = v0_;
+    SumForces();
     CreepAndSlip();
+    Bodies();
   }
 
   /// Wheel-rail forces in the normal direction.
@@ -46,6 +48,7 @@ class StepInParts {
   void Books() {
     dissipative_.wedge = friction_.wedge;
     BookWork(*wagon_, outer_, wheelsets_, dissipative_, rate0_, dt_, v0_, v1_, s_.work);
+    BookTorques(*wagon_, outer_, wheelsets_, dt_, v0_, v1_, s_.work);
   }
 
   /// From bodies to elements.
@@ -57,10 +60,8 @@ class StepInParts {
   /// From elements to bodies: sums of forces, kicks, with the wedges' friction between them; drifts.
   void Bodies() {
     v1_ = v0_;
-    force_ = {};
-    AddElementForces(*wagon_, elastic_, force_);
-    AddElementForces(*wagon_, dissipative_, force_);
-    AddOuterForces(*wagon_, outer_, force_);
+    SumForces();
+    AddReactions(*wagon_, outer_, wheelsets_, force_);
     Kick(*wagon_, force_, dt_, kCarbody, kWheelset1, v1_);
     free_rate_ = ElementsOf(*wagon_, v1_);
     Wedges();
@@ -72,6 +73,13 @@ class StepInParts {
   void WholeStep() { StepWagon(*wagon_, *track_, loads_, dt_, s_, kNoOutput); }
 
  private:
+  void SumForces() {
+    force_ = {};
+    AddElementForces(*wagon_, elastic_, force_);
+    AddElementForces(*wagon_, dissipative_, force_);
+    AddOuterForces(*wagon_, outer_, force_);
+  }
+
   static constexpr WagonOutput<T>* kNoOutput = nullptr;
 
   const Wagon* wagon_;
@@ -83,7 +91,7 @@ class StepInParts {
   ElementVector<T> deflection_, rate0_, elastic_, dissipative_, free_rate_, friction_;
   RailForces<T> rail_;
   OuterForces<T> outer_;
-  WheelsetWork<T> wheelsets_;
+  WheelsetStep<T> wheelsets_;
 };
 
 /// A part of the step and what it is called.

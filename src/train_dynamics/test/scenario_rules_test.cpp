@@ -95,14 +95,14 @@ TEST_F(ScenarioRules, ContactsBeyondKalkersTableNameTheirLine) {
       "[0.1, 10], got ";
   // The curvatures nearly cancel, so that the ellipse is far longer across the rail than along it.
   EXPECT_EQ(
-      ErrorsOf(Scenario("dip")).find("vehicles/ore_wagon.yaml:33: train.consist[0].vehicle." + complaint), 0u)
+      ErrorsOf(Scenario("dip")).find("vehicles/ore_wagon.yaml:37: train.consist[0].vehicle." + complaint), 0u)
       << ErrorsOf(Scenario("dip"));
   EXPECT_EQ(ErrorsOf(Scenario("dip"), {"model=ltd"}), "") << "the LTD models have no contact";
   try {
     LoadVehicle((root_ / "vehicles/ore_wagon.yaml").string(), {});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(WithoutFolder(error.what()).find("vehicles/ore_wagon.yaml:33: " + complaint), 0u)
+    EXPECT_EQ(WithoutFolder(error.what()).find("vehicles/ore_wagon.yaml:37: " + complaint), 0u)
         << error.what();
   }
 }
@@ -131,7 +131,7 @@ TEST_F(ScenarioRules, ContactsFromOverrides) {
 TEST_F(ScenarioRules, SpringsThatCannotCarryTheWagon) {
   Edit("vehicles/ore_wagon.yaml", "mass_kg: 147599.8", "mass_kg: 1e40");
   EXPECT_EQ(ErrorsOf(Scenario("dip")),
-            "vehicles/ore_wagon.yaml:44: train.consist[0].vehicle.spring_nest cannot be used: vehicle "
+            "vehicles/ore_wagon.yaml:48: train.consist[0].vehicle.spring_nest cannot be used: vehicle "
             "ore_wagon has "
             "no static equilibrium: its springs cannot carry its weight");
 }
@@ -367,6 +367,43 @@ TEST_F(ScenarioRules, WarnsOfFrictionTooSteepForTheStep) {
                 " 0.009 is below 0.0091822, the least for dt_s 0.001 at 900 kN and 1.6011e+05 kg: the "
                 "friction of the "
                 "draft gears may chatter; take a smaller dt_s");
+}
+
+TEST_F(ScenarioRules, WarnsOfAWheelsetThatCannotExist) {
+  // m r^2 = 1731.8 kg (0.485 m)^2 = 407.36 kg m2.
+  const std::string inertia = "train.consist[0].vehicle.wheelset.pitch_inertia_kgm2";
+  const std::string again = "train.consist[0].vehicle.wheelset.accept_large_inertia=false";
+  EXPECT_EQ(
+      WarningsOf("single_wagon_stop", {again}),
+      "vehicles/ore_wagon.yaml:25: " + inertia +
+          " is 1.6668 times mass_kg wheel_radius_m^2, more than if all mass were at the tread (a real "
+          "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and turn again "
+          "sooner than real ones; if that is meant, say accept_large_inertia: true");
+  EXPECT_EQ(WarningsOf("single_wagon_stop", {again, inertia + "=407.3"}), "");
+  EXPECT_NE(WarningsOf("single_wagon_stop", {again, inertia + "=407.4"}), "");
+  EXPECT_EQ(WarningsOf("single_wagon_stop"), "");  // the paper's wagon says so itself
+  for (const char* wagon : {"ore_wagon_loaded", "ore_wagon_empty"}) {
+    Put("scenarios/a.yaml", std::string("base: single_wagon_stop\ntrain:\n  name: one\n  connection: "
+                                        "calibrated\n  consist: [{vehicle: ") +
+                                wagon + ", count: 1}]\n");
+    EXPECT_EQ(WarningsOf("a"), "") << wagon;
+  }
+}
+
+TEST_F(ScenarioRules, AnUnknownReactionIsRefused) {
+  Edit("vehicles/ore_wagon_loaded.yaml", "reaction: frame", "reaction: bogie");
+  Edit("vehicles/ore_wagon_loaded.yaml", "friction_speed: tread", "friction_speed: wheel");
+  Put("scenarios/a.yaml",
+      "base: single_wagon_stop\ntrain: {name: one, connection: calibrated, consist: [{vehicle: "
+      "ore_wagon_loaded, count: 1}]}\n");
+  const std::string errors = ErrorsOf(Scenario("a"));
+  EXPECT_NE(errors.find("vehicles/ore_wagon_loaded.yaml:11: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("brake_rigging.reaction must be one of frame, carbody, none, got 'bogie'"),
+            std::string::npos)
+      << errors;
+  EXPECT_NE(errors.find("brake_rigging.friction_speed must be one of tread, vehicle, got 'wheel'"),
+            std::string::npos)
+      << errors;
 }
 
 TEST_F(ScenarioRules, WarnsOfCommandsWithoutEffectWhereTheyAreWritten) {

@@ -70,7 +70,7 @@ TEST(CentrePlate, TwoRimsMakeThePlateAndNeverPull) {
 // -------------------------------------------------------------------------------------------------
 
 TEST(WedgeSpring, ForceIsTheSlopeOfTheEnergyInTwoStages) {
-  const FrictionWedgeParams& p = OreWagon().friction_wedge;
+  const FrictionWedgeParams p = *OreWagon().friction_wedge;
   const auto energy = [&p](double travel) { return WedgeSpringEnergy(p, travel); };
   for (double travel = -0.0101; travel < 0.08; travel += 0.0007) {
     EXPECT_NEAR(Slope(energy, travel), WedgeSpringForce(p, travel), 1e-4) << travel;
@@ -99,7 +99,7 @@ double ForceRatioOfEq6(const FrictionWedgeParams& p, double mu, double direction
 }
 
 TEST(FrictionWedge, ForceRatioSolvesEq6) {
-  FrictionWedgeParams p = OreWagon().friction_wedge;
+  FrictionWedgeParams p = *OreWagon().friction_wedge;
   for (const double toe : {2.5, 0.0, -1.0, 5.0}) {
     for (const double slope : {30.0, 40.0, 55.0}) {
       p.toe_angle_deg = toe;
@@ -116,7 +116,7 @@ TEST(FrictionWedge, ForceRatioSolvesEq6) {
 }
 
 TEST(FrictionWedge, NumbersOfThePapersWedge) {
-  const FrictionWedge wedge(OreWagon().friction_wedge);
+  const FrictionWedge wedge(*OreWagon().friction_wedge);
   // Half a unit of the last digit of the project's notes.
   EXPECT_NEAR(wedge.ForceRatio(0.2), 1.14, 0.005);
   EXPECT_NEAR(wedge.ForceRatio(0.0), 0.95, 0.005);
@@ -127,7 +127,7 @@ TEST(FrictionWedge, NumbersOfThePapersWedge) {
 TEST(FrictionWedge, KappaIsTheTravelOfTheWedge) {
   // The bolster comes down by 1 and the wedge slides down the column by s, at gamma to the vertical, and
   // along the bolster's slope by t, at alpha to the vertical: s (sin g, -cos g) - t (sin a, cos a) = (0, -1).
-  FrictionWedgeParams p = OreWagon().friction_wedge;
+  FrictionWedgeParams p = *OreWagon().friction_wedge;
   for (const double toe : {-3.0, 0.0, 2.5}) {
     p.toe_angle_deg = toe;
     const double a = Radians(p.wedge_angle_deg), g = Radians(toe);
@@ -139,7 +139,7 @@ TEST(FrictionWedge, KappaIsTheTravelOfTheWedge) {
 }
 
 TEST(FrictionWedge, BoundsOpposeTheMotionAndScaleWithTheSpring) {
-  const FrictionWedge wedge(OreWagon().friction_wedge);
+  const FrictionWedge wedge(*OreWagon().friction_wedge);
   for (const double rate : {0.0, 0.003, 0.5}) {
     const WedgeFrictionBounds<double> bounds = WedgeFriction(wedge, 5e4, rate);
     EXPECT_LT(bounds.lower, 0.0);
@@ -156,7 +156,7 @@ TEST(FrictionWedge, BoundsOpposeTheMotionAndScaleWithTheSpring) {
 }
 
 TEST(FrictionWedge, FrictionFallsFromStaticToKinetic) {
-  const FrictionWedge wedge(OreWagon().friction_wedge);
+  const FrictionWedge wedge(*OreWagon().friction_wedge);
   const auto upper = [&wedge](double mu) { return 1e5 * (wedge.ForceRatio(mu) - wedge.kappa); };
   EXPECT_EQ(WedgeFriction(wedge, 1e5, 0.0).upper, upper(0.23));
   EXPECT_NEAR(WedgeFriction(wedge, 1e5, 0.01).upper, upper(0.215), 1e-9);  // half way at the blend speed

@@ -205,8 +205,8 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
         const ElementVector<double> rates = ElementsOf(w, change);
         response.col(end) << rates.wedge[2 * bogie], rates.wedge[2 * bogie + 1];
         const double spring =
-            WedgeSpringForce(w.params.friction_wedge, w.wedge.kappa * p.deflection[2 * bogie + end]);
-        const auto bounds = WedgeFriction(w.wedge, 2.0 * spring, p.rate[2 * bogie + end]);
+            WedgeSpringForce(*w.params.friction_wedge, w.wedge->kappa * p.deflection[2 * bogie + end]);
+        const auto bounds = WedgeFriction(*w.wedge, 2.0 * spring, p.rate[2 * bogie + end]);
         lower[end] = bounds.lower;
         upper[end] = bounds.upper;
       }
@@ -271,15 +271,15 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
 // bogie, each a half nest and a wedge whose spring acts with kappa and is travelled by kappa.
 double NestDeflection(const VehicleParams& p) {
   const double load = 0.25 * 9.81 * (0.5 * p.carbody.mass_kg + p.bolster.mass_kg + 24.0);
-  const double a = p.friction_wedge.wedge_angle_deg * std::acos(-1.0) / 180.0;
-  const double g = p.friction_wedge.toe_angle_deg * std::acos(-1.0) / 180.0;
+  const double a = p.friction_wedge->wedge_angle_deg * std::acos(-1.0) / 180.0;
+  const double g = p.friction_wedge->toe_angle_deg * std::acos(-1.0) / 180.0;
   const double kappa = std::sin(a) * std::cos(g) / std::sin(a + g);
   const auto quarter = [&](double d) {
     const auto staged = [](double outer, double inner, double x) {
       return outer * x + inner * std::max(0.0, x - 0.022);
     };
     return staged(1590e3, 566e3, d) + 4e8 * std::max(0.0, d - 0.074) +
-           kappa * staged(983e3, p.friction_wedge.inner_stiffness_n_per_m, kappa * d);
+           kappa * staged(983e3, p.friction_wedge->inner_stiffness_n_per_m, kappa * d);
   };
   double low = 0.0, high = 0.1;
   for (int i = 0; i < 60; ++i) {
@@ -301,7 +301,7 @@ TEST(StaticEquilibrium, RestsAtTheDeflectionOfAScalarEquation) {
   VehicleParams p = OreWagon();
   EXPECT_NEAR(NestDeflection(p), 0.0585, 0.00005);  // half a unit of the notes' last digit
   for (const double inner : {566e3, 0.0}) {
-    p.friction_wedge.inner_stiffness_n_per_m = inner;
+    p.friction_wedge->inner_stiffness_n_per_m = inner;
     const Wagon w(p);
     const ElementVector<double> e = ElementsOf(w, StaticEquilibrium(w, 0.0, 0.0).position);
     // 1e-9 of the weight over 20 MN/m, the solver's own criterion.
@@ -324,8 +324,8 @@ TEST(StaticEquilibrium, AWagonThatItsSpringsCannotCarryIsRefused) {
   // Soft all the way, the eight half nests would have to yield by 90 000 km.
   p.spring_nest.outer_stiffness_n_per_m = p.spring_nest.solid_stiffness_n_per_m = 1e-3;
   p.spring_nest.inner_stiffness_n_per_m = 0.0;
-  p.friction_wedge.outer_stiffness_n_per_m = 1e-6;
-  p.friction_wedge.inner_stiffness_n_per_m = 0.0;
+  p.friction_wedge->outer_stiffness_n_per_m = 1e-6;
+  p.friction_wedge->inner_stiffness_n_per_m = 0.0;
   const Wagon w(p);  // every number is one that a wagon may have
   EXPECT_THROW(StaticEquilibrium(w, 0.0, 0.0), std::invalid_argument);
 }

@@ -16,7 +16,7 @@ namespace {
 const Wagon& SmoothWagon() {
   static const Wagon wagon = [] {
     VehicleParams p = OreWagon();
-    p.friction_wedge.static_friction_coefficient = p.friction_wedge.kinetic_friction_coefficient = 0.0;
+    p.friction_wedge->static_friction_coefficient = p.friction_wedge->kinetic_friction_coefficient = 0.0;
     p.wheel_rail.adhesion.friction_coefficient = 1e-12;
     p.propulsion_resistance = {0.0, 0.0, 0.0};
     return Wagon(p);
@@ -24,8 +24,8 @@ const Wagon& SmoothWagon() {
   return wagon;
 }
 
-const WagonModes& Modes() {
-  static const WagonModes modes = AnalyseModes(SmoothWagon());
+const WagonModes<>& Modes() {
+  static const WagonModes<> modes = AnalyseModes(SmoothWagon());
   return modes;
 }
 
@@ -35,7 +35,7 @@ TEST(WagonModes, CountsEveryFreedom) {
   EXPECT_EQ(Modes().rigid_body_modes, 5);
   EXPECT_EQ(Modes().modes.size(), 22u);
   double last = 0.0;
-  for (const WagonMode& mode : Modes().modes) {
+  for (const WagonMode<>& mode : Modes().modes) {
     EXPECT_GE(mode.frequency_hz, last);
     last = mode.frequency_hz;
     EXPECT_GT(mode.damping_ratio, 0.0);  // every mode is damped by a pad or a contact
@@ -49,11 +49,11 @@ TEST(WagonModes, CountsEveryFreedom) {
 }
 
 TEST(WagonModes, BounceIsThatOfOneMassOnSpringsInSeries) {
-  const double kappa = SmoothWagon().wedge.kappa;
+  const double kappa = SmoothWagon().wedge->kappa;
   const double nests = 8.0 * (1590e3 + 566e3 + kappa * kappa * (983e3 + 566e3));
   const double series = 1.0 / (1.0 / nests + 1.0 / (8.0 * 3e7) + 1.0 / (8.0 * 6e8) + 1.0 / (2.0 * 4e8));
   const double bounce = std::sqrt(series / 147599.8) / (2.0 * std::acos(-1.0));
-  const WagonMode& lowest = Modes().modes[0];
+  const WagonMode<>& lowest = Modes().modes[0];
   EXPECT_GT(lowest.energy_share.z[kCarbody], 0.9);
   // Bolsters, frames and wheelsets move along: 5 % of the mass with at most a part of the motion.
   EXPECT_NEAR(lowest.frequency_hz, bounce, 0.01 * bounce);
@@ -65,7 +65,7 @@ TEST(WagonModes, PitchIsThatOfACarbodyOnTwoBogies) {
   // it. They turn with it too, held down by its rims, on nests and wedges before and behind their centres.
   // And both bogies must follow lengthways, for the guides are 2.0 m - 0.55 m below the carbody's centre.
   const double a = 3.4825, arm = 2.0 - 0.55;
-  const double kappa = SmoothWagon().wedge.kappa;
+  const double kappa = SmoothWagon().wedge->kappa;
   const double nest = 1590e3 + 566e3, wedge = kappa * kappa * (983e3 + 566e3);
   const double bogie =
       1.0 / (1.0 / (4.0 * (nest + wedge)) + 1.0 / (4.0 * 3e7) + 1.0 / (4.0 * 6e8) + 1.0 / 4e8);
@@ -76,7 +76,7 @@ TEST(WagonModes, PitchIsThatOfACarbodyOnTwoBogies) {
   const double inertia = 1229545.83 + 2.0 * bolster_kg * a * a + reduced_kg * arm * arm;
   const double pitch_hz =
       std::sqrt(2.0 * (bogie * a * a + bolster_turning) / inertia) / (2.0 * std::acos(-1.0));
-  const WagonMode& pitch = Modes().modes[1];
+  const WagonMode<>& pitch = Modes().modes[1];
   EXPECT_GT(pitch.energy_share.pitch[kCarbody], 0.9);
   // Left out, each less than 0.1 %: the plates give 3 % of the travel, the frames take part in 11 % of it, the
   // bolsters turn 1 % less than the carbody. (Without the bolsters' travel or without the bogies' following the

@@ -74,8 +74,9 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
   for (std::size_t type = 0; type < consist_.vehicle_types.size(); ++type) {
     at_rest_.emplace_back();
     if (scenario.ModelOfGroup(type) != train_dynamics::VehicleModel::kTwoD) continue;
-    const train_dynamics::Wagon wagon(consist_.vehicle_types[type]);
-    at_rest_.back() = train_dynamics::StaticEquilibrium(wagon, 0.0, 0.0).position;
+    at_rest_.back() = train_dynamics::WithBogieVehicle(consist_.vehicle_types[type], [](const auto& wagon) {
+      return CloseUp::BodiesOf(train_dynamics::StaticEquilibrium(wagon, 0.0, 0.0).position);
+    });
   }
   Forget();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "train_brake_rviz/board/axis.h"
 #include "train_brake_rviz/board/layout.h"
@@ -9,12 +10,10 @@
 namespace train_brake_rviz {
 namespace {
 
-using train_dynamics::BodyVector;
 using train_dynamics::kCarbody;
 using train_dynamics::kFrontBolster;
 using train_dynamics::kFrontFrame;
 using train_dynamics::kWheelset1;
-using train_dynamics::kWheelsets;
 
 constexpr double kSpan = 49.0;                      // width of the wagon on the board
 constexpr double kRailUp = 10.0;                    // of the rail over the area's bottom
@@ -22,16 +21,17 @@ constexpr double kLoadText = 3.3, kSlipText = 1.3;  // heights of the numbers ov
 constexpr double kSliding = 0.1;                    // creepage from which a wheel counts as sliding
 constexpr double kUndergear = 0.62;  // height of a carbody's floor, of that of its centre of gravity
 
-double MeanOfWheelsets(const std::array<double, train_dynamics::kBodies>& x) {
-  return 0.25 * (x[kWheelset1] + x[kWheelset1 + 1] + x[kWheelset1 + 2] + x[kWheelset1 + 3]);
+double MeanOfWheelsets(const CloseUp::Bodies& position, int wheelsets) {
+  const double* first = &position.x[kWheelset1];
+  return std::accumulate(first, first + wheelsets, 0.0) / wheelsets;
 }
 
 std::string Kilonewtons(double force_n) { return Rounded(1e-3 * force_n, 0) + " kN"; }
 
 }  // namespace
 
-CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle,
-                 const BodyVector<double>& at_rest, double motion_exaggeration)
+CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle, const Bodies& at_rest,
+                 double motion_exaggeration)
     : area_(area),
       vehicle_(vehicle),
       at_rest_(at_rest),
@@ -46,21 +46,26 @@ CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& veh
     forward_m_[kFrontBolster + bogie] = forward_m_[kFrontFrame + bogie] = centre;
     height_m_[kFrontBolster + bogie] = vehicle.bolster.cg_height_m;
     height_m_[kFrontFrame + bogie] = vehicle.bogie_frame.cg_height_m;
-    for (int axle = 0; axle < 2; ++axle) {
-      const int wheelset = kWheelset1 + 2 * bogie + axle;
-      forward_m_[wheelset] = centre + (axle == 0 ? 1.0 : -1.0) * vehicle.half_wheelset_spacing_m;
+    const int wheelsets = vehicle.wheelsets_per_bogie;
+    for (int axle = 0; axle < wheelsets; ++axle) {
+      const int wheelset = kWheelset1 + wheelsets * bogie + axle;
+      double offset = sign * vehicle.middle_wheelset_offset_m;
+      if (axle == 0) offset = vehicle.half_wheelset_spacing_m;
+      if (axle == wheelsets - 1) offset = -vehicle.half_wheelset_spacing_m;
+      forward_m_[wheelset] = centre + offset;
       height_m_[wheelset] = vehicle.wheelset.wheel_radius_m;
     }
   }
 }
 
-Point CloseUp::PlaceOf(const BodyVector<double>& position, int body, double offset_forward_m,
-                       double offset_up_m) const {
+Point CloseUp::PlaceOf(const Bodies& position, int body, double offset_forward_m, double offset_up_m) const {
   const bool turns = body >= kWheelset1;  // wheels turn as they do, the others tilt as much as all moves
   const double angle =
       turns ? position.pitch[body] : exaggeration_ * (position.pitch[body] - at_rest_.pitch[body]);
-  const double forward = forward_m_[body] + exaggeration_ * (position.x[body] - MeanOfWheelsets(position.x)) +
-                         std::cos(angle) * offset_forward_m + std::sin(angle) * offset_up_m;
+  const double forward =
+      forward_m_[body] +
+      exaggeration_ * (position.x[body] - MeanOfWheelsets(position, vehicle_.Wheelsets())) +
+      std::cos(angle) * offset_forward_m + std::sin(angle) * offset_up_m;
   const double up = height_m_[body] + exaggeration_ * (position.z[body] - at_rest_.z[body]) +
                     std::cos(angle) * offset_up_m - std::sin(angle) * offset_forward_m;
   return {0.5 * (area_.left + area_.right) - scale_ * forward, rail_ + scale_ * up};
@@ -76,13 +81,13 @@ void CloseUp::Draw(Drawing& drawing, const train_dynamics::Track& track, const S
   drawing.Write({left, area_.top - 4.6}, Align::kLeft, layout::kSmallText, sight.remark, palette::kDark);
   DrawRail(drawing, track, sight.centre_m);
 
-  BodyVector<double> position = at_rest_;
-  for (int i = 0; i < kWheelsets; ++i) {
+  Bodies position = at_rest_;
+  for (int i = 0; i < vehicle_.Wheelsets(); ++i) {
     position.pitch[kWheelset1 + i] = sight.centre_m / vehicle_.wheelset.wheel_radius_m;
   }
-  if (sight.detail != nullptr) position = sight.detail->position;
+  if (sight.detail != nullptr) position = BodiesOf(sight.detail->position);
   DrawBodies(drawing, position, sight.color);
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < vehicle_.Wheelsets(); ++i) {
     const bool slides = sight.detail != nullptr && std::abs(sight.detail->output.creepage[i]) >= kSliding;
     DrawWheelset(drawing, position, i, slides);
   }
@@ -113,7 +118,7 @@ void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::Track& track, dou
   }
 }
 
-void CloseUp::DrawBodies(Drawing& drawing, const BodyVector<double>& position, Color body) const {
+void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) const {
   const auto outline = [&](int b, const std::vector<Point>& corners_m, Color fill, Layer layer) {
     std::vector<Point> corners;
     corners.reserve(corners_m.size() + 1);
@@ -166,8 +171,7 @@ void CloseUp::DrawBodies(Drawing& drawing, const BodyVector<double>& position, C
   }
 }
 
-void CloseUp::DrawWheelset(Drawing& drawing, const BodyVector<double>& position, int wheelset,
-                           bool slides) const {
+void CloseUp::DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides) const {
   const int body = kWheelset1 + wheelset;
   const double radius = vehicle_.wheelset.wheel_radius_m;
   const Point axle = PlaceOf(position, body, 0.0, 0.0);
@@ -184,9 +188,9 @@ void CloseUp::DrawWheelset(Drawing& drawing, const BodyVector<double>& position,
 void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDetail& detail) const {
   constexpr double kWidth = 0.5;
   const double radius = vehicle_.wheelset.wheel_radius_m;
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < train_dynamics::kWheelsets; ++i) {
     const int body = kWheelset1 + i;
-    const Point axle = PlaceOf(detail.position, body, 0.0, 0.0);
+    const Point axle = PlaceOf(BodiesOf(detail.position), body, 0.0, 0.0);
     const Point contact = {axle.right, axle.up - scale_ * radius};
     drawing.On(Layer::kTop);
     const double load = detail.output.normal_force_n[i], creep = detail.output.creep_force_n[i];
@@ -213,8 +217,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
   }
 }
 
-void CloseUp::DrawCouplerForce(Drawing& drawing, const BodyVector<double>& position, double end,
-                               double force_n) const {
+void CloseUp::DrawCouplerForce(Drawing& drawing, const Bodies& position, double end, double force_n) const {
   if (force_n == 0.0 || !std::isfinite(force_n)) return;
   constexpr double kWidth = 0.8, kGap = 0.6, kNumberAway = 8.0, kNumberUp = 2.4;
   const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;

@@ -65,10 +65,9 @@ BrakeSystem ReadPressureTable(const std::string& file, int vehicles) {
   }
 }
 
-/// The wagon of a vehicle; or none, after reporting which of its parameters do not make one.
+/// Whether a vehicle has a 2D model that can rest; if not, reports which of its parameters are in the way.
 /// @param path  of the vehicle with a dot at its end; empty for the root
-std::optional<Wagon> BuildWagon(const VehicleParams& vehicle, const std::string& path, Reader& rules) {
-  std::optional<Wagon> wagon;
+bool MakesWagon(const VehicleParams& vehicle, const std::string& path, Reader& rules) {
   const HertzParams& hertz = vehicle.wheel_rail.hertz;
   const double radius_m = vehicle.wheelset.wheel_radius_m;
   struct Step {
@@ -82,18 +81,19 @@ std::optional<Wagon> BuildWagon(const VehicleParams& vehicle, const std::string&
          const ContactEllipse ellipse = HertzEllipse(hertz, radius_m);
          KalkerC11(ellipse.a_per_cbrt_n / ellipse.b_per_cbrt_n, hertz.poisson_ratio);
        }},
-      {"wheel_rail", "makes no wagon", [&] { wagon.emplace(vehicle); }},
-      {"spring_nest", "cannot be used", [&] { StaticEquilibrium(*wagon, 0.0, 0.0); }},
+      {"wheel_rail", "makes no wagon", [&] { WithBogieVehicle(vehicle, [](const auto& /*wagon*/) {}); }},
+      {"spring_nest", "cannot be used",
+       [&] { WithBogieVehicle(vehicle, [](const auto& wagon) { StaticEquilibrium(wagon, 0.0, 0.0); }); }},
   };
   for (const Step& step : steps) {
     try {
       step.build();
     } catch (const std::exception& error) {
       rules.Check(false, path + step.key, std::string(step.complaint) + ": " + error.what());
-      return std::nullopt;
+      return false;
     }
   }
-  return wagon;
+  return true;
 }
 
 /// A number >= 0 rounded down to three digits.
@@ -116,10 +116,10 @@ std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& sc
     const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
     if (!judged.insert(Write(vehicle)).second) continue;
     const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";
-    const std::optional<Wagon> wagon = BuildWagon(vehicle, path + ".", rules);
-    if (!wagon) continue;
-    stable_steps.emplace_back(vehicle.name.empty() ? path : vehicle.name,
-                              AnalyseModes(*wagon).largest_stable_step_s);
+    if (!MakesWagon(vehicle, path + ".", rules)) continue;
+    const double stable_step_s = WithBogieVehicle(
+        vehicle, [](const auto& wagon) { return AnalyseModes(wagon).largest_stable_step_s; });
+    stable_steps.emplace_back(vehicle.name.empty() ? path : vehicle.name, stable_step_s);
   }
   const auto stiffest = std::min_element(stable_steps.begin(), stable_steps.end(),
                                          [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -187,7 +187,7 @@ VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string
   ErrorList errors;
   VehicleParams vehicle =
       Load<VehicleParams>(file, OptionsFor(overrides, "vehicles"), errors,
-                          [](VehicleParams& params, Reader& rules) { BuildWagon(params, "", rules); });
+                          [](VehicleParams& params, Reader& rules) { MakesWagon(params, "", rules); });
   ThrowIfAny(errors);
   return vehicle;
 }

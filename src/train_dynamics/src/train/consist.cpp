@@ -8,6 +8,12 @@ int TrainParams::VehicleCount() const {
   return static_cast<int>(count < 1000000 ? count : 1000000);
 }
 
+const VehicleParams& TrainParams::VehicleAt(int index) const {
+  std::size_t group = 0;
+  while (index >= consist[group].count) index -= consist[group++].count;
+  return consist[group].vehicle;
+}
+
 Consist::Consist(const TrainParams& train) {
   connection_types.push_back(train.connection);
   for (const ConsistGroupParams& group : train.consist) {

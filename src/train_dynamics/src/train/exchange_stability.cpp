@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "train_dynamics/vehicle/wagon.h"
+#include "train_dynamics/vehicle/ltd_vehicle.h"
 
 namespace train_dynamics {
 
@@ -18,7 +18,7 @@ double LongestStableExchange(const ConnectionParams& connection, double head_mas
 double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model) {
   if (model == VehicleModel::kLtdNoInertia) return vehicle.TotalMass();
   if (model == VehicleModel::kLtd)
-    return vehicle.TotalMass() + EquivalentRotationalMass(vehicle.wheelset, kWheelsets);
+    return vehicle.TotalMass() + EquivalentRotationalMass(vehicle.wheelset, vehicle.Wheelsets());
   const BodyParams& carbody = vehicle.carbody;
   const double arm_m = vehicle.coupler_height_m - carbody.cg_height_m;
   return 1.0 / (1.0 / carbody.mass_kg + arm_m * arm_m / carbody.pitch_inertia_kgm2);

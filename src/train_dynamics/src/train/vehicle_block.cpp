@@ -19,7 +19,9 @@ LtdState<double> StartState(const LtdVehicle& /*vehicle*/, double origin_m, doub
   state.v_mps = speed_mps;
   return state;
 }
-WagonState<double> StartState(const Wagon& wagon, double origin_m, double speed_mps) {
+template <int kPerBogie>
+WagonState<double, kPerBogie> StartState(const BogieVehicle<kPerBogie>& wagon, double origin_m,
+                                         double speed_mps) {
   return StaticEquilibrium(wagon, origin_m, speed_mps);
 }
 
@@ -36,11 +38,15 @@ VehicleEnergy EnergyOf(double kinetic_j, double potential_j, const VehicleWork<d
 VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const Track& /*track*/, const LtdState<double>& s) {
   return EnergyOf(KineticEnergy(vehicle, s), 0.0, s.work);
 }
-VehicleEnergy EnergyOf(const Wagon& wagon, const Track& track, const WagonState<double>& s) {
+template <int kPerBogie>
+VehicleEnergy EnergyOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
+                       const WagonState<double, kPerBogie>& s) {
   return EnergyOf(KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work);
 }
 
-void FillDetail(const VehicleBatch<LtdVehicle>& /*batch*/, int /*i*/, WagonDetail& /*detail*/) {}
+/// WagonDetail holds vehicles with two wheelsets per bogie; the scenario's rules refuse others.
+template <class Vehicle>
+void FillDetail(const VehicleBatch<Vehicle>& /*batch*/, int /*i*/, WagonDetail& /*detail*/) {}
 void FillDetail(const VehicleBatch<Wagon>& batch, int i, WagonDetail& detail) {
   const WagonState<double> s = batch.StateOf(i);
   detail.position = s.position;
@@ -58,9 +64,11 @@ std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const
 }
 
 /// Names the first body that is not where a body can be.
-std::string FaultOf(const Wagon& wagon, const Track& track, const WagonState<double>& s) {
-  const OverRail<double> over = OverRailOf(wagon, track, s);
-  for (int b = 0; b < kBodies; ++b) {
+template <int kPerBogie>
+std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
+                    const WagonState<double, kPerBogie>& s) {
+  const OverRail<double, kPerBogie> over = OverRailOf(wagon, track, s);
+  for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
     const auto describe = [b](const char* what, double value, const char* unit) {
       return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
     };
@@ -81,7 +89,7 @@ std::string FaultOf(const Wagon& wagon, const Track& track, const WagonState<dou
 // ---- what they have in common ---------------------------------------------------------------------------------
 
 /// Equal vehicles, one behind the other. A model over lanes is one more alternative here.
-using Batch = std::variant<VehicleBatch<Wagon>, VehicleBatch<LtdVehicle>>;
+using Batch = std::variant<VehicleBatch<Wagon>, VehicleBatch<SixAxleVehicle>, VehicleBatch<LtdVehicle>>;
 
 /// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
@@ -98,7 +106,10 @@ Batch MakeBatch(const Vehicle& vehicle, double speed_mps, const std::vector<doub
 Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,
                 const std::vector<double>& centre_m) {
   const double speed_mps = scenario.InitialSpeed();
-  if (model == VehicleModel::kTwoD) return MakeBatch(Wagon(params), speed_mps, centre_m);
+  if (model == VehicleModel::kTwoD) {
+    return WithBogieVehicle(params,
+                            [&](const auto& vehicle) { return MakeBatch(vehicle, speed_mps, centre_m); });
+  }
   const bool with_inertia = model == VehicleModel::kLtd;
   return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator), speed_mps, centre_m);
 }

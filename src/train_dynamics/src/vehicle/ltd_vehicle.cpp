@@ -9,7 +9,7 @@ LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia
       propulsion_resistance(params.propulsion_resistance),
       weight_n(params.Weight()),
       inertia_kg(params.TotalMass() +
-                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)),
+                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, params.Wheelsets()) : 0.0)),
       integrator(method) {
   strict_config::Validate(params);
 }

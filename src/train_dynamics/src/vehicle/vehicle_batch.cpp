@@ -19,12 +19,18 @@ constexpr std::size_t Fields() {
 }
 
 LaneKernels::StepPacks<Wagon> StepOf(const LaneKernels& kernels, const Wagon&) { return kernels.step_wagons; }
+LaneKernels::StepPacks<SixAxleVehicle> StepOf(const LaneKernels& kernels, const SixAxleVehicle&) {
+  return kernels.step_six_axle;
+}
 LaneKernels::StepPacks<LtdVehicle> StepOf(const LaneKernels& kernels, const LtdVehicle&) {
   return kernels.step_ltd;
 }
 
 LaneKernels::RecordPack<Wagon> RecordOf(const LaneKernels& kernels, const Wagon&) {
   return kernels.record_wagons;
+}
+LaneKernels::RecordPack<SixAxleVehicle> RecordOf(const LaneKernels& kernels, const SixAxleVehicle&) {
+  return kernels.record_six_axle;
 }
 LaneKernels::RecordPack<LtdVehicle> RecordOf(const LaneKernels& kernels, const LtdVehicle&) {
   return kernels.record_ltd;
@@ -249,6 +255,7 @@ const std::vector<LaneKernels>& AllLaneKernels() {
 }
 
 template class VehicleBatch<Wagon>;
+template class VehicleBatch<SixAxleVehicle>;
 template class VehicleBatch<LtdVehicle>;
 
 }  // namespace train_dynamics

@@ -20,20 +20,24 @@ double CreepStiffnessOf(const VehicleParams& p) {
 }
 
 /// One number per vertical displacement and pitch.
-using VerticalVector = Eigen::Matrix<double, 2 * kBodies, 1>;
+template <int kPerBogie>
+using VerticalVector = Eigen::Matrix<double, 2 * kBodiesOf<kPerBogie>, 1>;
 
 /// Vertical and pitching forces on the bodies at rest, wedges without friction.
-VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
-  BodyVector<double> position{}, force{};
+template <int kPerBogie>
+VerticalVector<kPerBogie> VerticalForces(const BogieVehicle<kPerBogie>& w,
+                                         const VerticalVector<kPerBogie>& q) {
+  constexpr int kBodies = kBodiesOf<kPerBogie>;
+  BodyVector<double, kPerBogie> position{}, force{};
   for (int i = 0; i < kBodies; ++i) {
     position.z[i] = q[i];
     position.pitch[i] = q[kBodies + i];
   }
-  ElementVector<double> elastic = ElasticForces(w, ElementsOf(w, position));
+  ElementVector<double, kPerBogie> elastic = ElasticForces(w, ElementsOf(w, position));
   elastic.pad_x = {};
   elastic.guide_x = elastic.plate_x = {};
   AddElementForces(w, elastic, force);
-  VerticalVector f;
+  VerticalVector<kPerBogie> f;
   for (int i = 0; i < kBodies; ++i) {
     f[i] = force.z[i] - kGravity * w.mass_kg[i];
     f[kBodies + i] = force.pitch[i];
@@ -45,10 +49,32 @@ VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
   return f;
 }
 
+/// The wedges of a bogie are solved by sweeps, whose number suits a weak coupling (WedgeFrictionForces).
+template <int kPerBogie>
+void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
+  const double offset = w.wedge->params.offset_m;
+  const double both = w.inv_mass_per_kg[kFrontBolster] + w.inv_mass_per_kg[kFrontFrame];
+  const double turn =
+      offset * offset * (w.inv_inertia_per_kgm2[kFrontBolster] + w.inv_inertia_per_kgm2[kFrontFrame]);
+  constexpr double kStrongestCoupling = 0.5;
+  if (std::abs(both - turn) > kStrongestCoupling * (both + turn)) {
+    throw std::invalid_argument(
+        "friction_wedge.offset_m couples the wedges of a bogie too strongly for the time step: "
+        "it must be nearer to " +
+        std::to_string(offset * std::sqrt(both / turn)) + " m");
+  }
+}
+
 }  // namespace
 
-Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.friction_wedge) {
+template <int kPerBogie>
+BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle) : params(vehicle) {
   strict_config::Validate(params);
+  if (params.wheelsets_per_bogie != kPerBogie) {
+    throw std::invalid_argument("wheelsets_per_bogie must be " + std::to_string(kPerBogie) + ", got " +
+                                std::to_string(params.wheelsets_per_bogie));
+  }
+  if (params.friction_wedge) wedge.emplace(*params.friction_wedge);
   const VehicleParams& p = params;
   const auto set_body = [this](int i, double mass, double inertia) {
     mass_kg[i] = mass;
@@ -64,10 +90,16 @@ Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.fric
   }
   for (int i = 0; i < kWheelsets; ++i) {
     set_body(kWheelset1 + i, p.wheelset.mass_kg, p.wheelset.pitch_inertia_kgm2);
+    const int bogie = BogieOfWheelset<kPerBogie>(i), place = i % kPerBogie;  // 0 = front
+    double offset = bogie == 0 ? p.middle_wheelset_offset_m : -p.middle_wheelset_offset_m;
+    if (place == 0) offset = p.half_wheelset_spacing_m;
+    if (place == kPerBogie - 1) offset = -p.half_wheelset_spacing_m;
+    wheelset_offset_m[i] = bogie_offset_m[bogie] + offset;
+  }
+  for (int i = 0; i < kQuarters; ++i) {
     const double end = i % 2 == 0 ? 1.0 : -1.0;
-    wheelset_offset_m[i] = bogie_offset_m[BogieOf(i)] + end * p.half_wheelset_spacing_m;
     nest_offset_m[i] = end * p.spring_nest.offset_m;
-    wedge_offset_m[i] = end * p.friction_wedge.offset_m;
+    wedge_offset_m[i] = wedge ? end * wedge->params.offset_m : 0.0;
     rim_offset_m[i] = end * p.centre_plate.rim_offset_m;
   }
   pad_frame_arm_m = p.wheelset.wheel_radius_m - p.bogie_frame.cg_height_m;
@@ -76,40 +108,34 @@ Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.fric
   plate_carbody_arm_m = p.centre_plate.height_m - p.carbody.cg_height_m;
   plate_bolster_arm_m = p.centre_plate.height_m - p.bolster.cg_height_m;
   coupler_arm_m = p.coupler_height_m - p.carbody.cg_height_m;
-  // The wedges of a bogie are solved by sweeps, whose number suits a weak coupling (WedgeFrictionForces).
-  const double both = inv_mass_per_kg[kFrontBolster] + inv_mass_per_kg[kFrontFrame];
-  const double turn = p.friction_wedge.offset_m * p.friction_wedge.offset_m *
-                      (inv_inertia_per_kgm2[kFrontBolster] + inv_inertia_per_kgm2[kFrontFrame]);
-  constexpr double kStrongestCoupling = 0.5;
-  if (std::abs(both - turn) > kStrongestCoupling * (both + turn)) {
-    throw std::invalid_argument(
-        "friction_wedge.offset_m couples the wedges of a bogie too strongly for the time step: "
-        "it must be nearer to " +
-        std::to_string(p.friction_wedge.offset_m * std::sqrt(both / turn)) + " m");
-  }
+  if (wedge) CheckWedgeCoupling(*this);
   weight_n = p.Weight();
   creep_stiffness = CreepStiffnessOf(p);
   rolling = {p.wheelset.wheel_radius_m, 1.0 / p.wheelset.mass_kg, 1.0 / p.wheelset.pitch_inertia_kgm2};
 }
 
-WagonState<double> StaticEquilibrium(const Wagon& wagon, double origin_m, double speed_mps) {
+template <int kPerBogie>
+WagonState<double, kPerBogie> StaticEquilibrium(const BogieVehicle<kPerBogie>& wagon, double origin_m,
+                                                double speed_mps) {
+  using Vector = VerticalVector<kPerBogie>;
+  constexpr int kBodies = kBodiesOf<kPerBogie>;
   // Newton's method on piecewise linear forces, started with all springs under load; ends exactly once the
   // active pieces are right.
-  VerticalVector q = VerticalVector::Zero();
+  Vector q = Vector::Zero();
   for (int i = 0; i < kBodies; ++i) q[i] = i >= kWheelset1 ? -1e-4 : i >= kFrontFrame ? -2e-3 : -0.05;
   q[kCarbody] -= 1e-3;
   bool settled = false;
   for (int iteration = 0; iteration < 50 && !settled; ++iteration) {
-    const VerticalVector f = VerticalForces(wagon, q);
+    const Vector f = VerticalForces(wagon, q);
     Eigen::Matrix<double, 2 * kBodies, 2 * kBodies> slope;
     constexpr double kProbe = 1e-7;
     for (int k = 0; k < 2 * kBodies; ++k) {
-      VerticalVector ahead = q, behind = q;
+      Vector ahead = q, behind = q;
       ahead[k] += kProbe;
       behind[k] -= kProbe;
       slope.col(k) = (VerticalForces(wagon, ahead) - VerticalForces(wagon, behind)) / (2.0 * kProbe);
     }
-    const VerticalVector step = slope.partialPivLu().solve(f);
+    const Vector step = slope.partialPivLu().solve(f);
     q -= step;
     settled = step.cwiseAbs().maxCoeff() < 1e-14;
   }
@@ -117,7 +143,7 @@ WagonState<double> StaticEquilibrium(const Wagon& wagon, double origin_m, double
     throw std::invalid_argument("vehicle " + wagon.params.name +
                                 " has no static equilibrium: its springs cannot carry its weight");
   }
-  WagonState<double> s;
+  WagonState<double, kPerBogie> s;
   s.origin_m = origin_m;
   for (int i = 0; i < kBodies; ++i) {
     s.position.z[i] = q[i];
@@ -128,34 +154,39 @@ WagonState<double> StaticEquilibrium(const Wagon& wagon, double origin_m, double
   return s;
 }
 
-double KineticEnergy(const Wagon& w, const WagonState<double>& s) {
+template <int kPerBogie>
+double KineticEnergy(const BogieVehicle<kPerBogie>& w, const WagonState<double, kPerBogie>& s) {
   double twice = 0.0;
-  for (int i = 0; i < kBodies; ++i) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     twice += w.mass_kg[i] * (s.velocity.x[i] * s.velocity.x[i] + s.velocity.z[i] * s.velocity.z[i]) +
              w.inertia_kgm2[i] * s.velocity.pitch[i] * s.velocity.pitch[i];
   }
   return 0.5 * twice;
 }
 
-double PotentialEnergy(const Wagon& w, const Track& track, const WagonState<double>& s) {
+template <int kPerBogie>
+double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track,
+                       const WagonState<double, kPerBogie>& s) {
   const VehicleParams& p = w.params;
-  const ElementVector<double> e = ElementsOf(w, s.position);
+  const ElementVector<double, kPerBogie> e = ElementsOf(w, s.position);
   const auto spring = [](const LinearSpringDamper& law, double d) {
     return 0.5 * law.stiffness_n_per_m * d * d;
   };
   double energy = 0.0;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     energy += 2.0 * (spring(p.adaptor_pad, e.pad_x[i]) + spring(p.adaptor_pad, e.pad_z[i]));
+  }
+  for (int i = 0; i < kQuarters; ++i) {
     energy += 2.0 * SpringNestEnergy(p.spring_nest, e.nest[i]);
-    energy += 2.0 * WedgeSpringEnergy(p.friction_wedge, w.wedge.kappa * e.wedge[i]);
+    if (w.wedge) energy += 2.0 * WedgeSpringEnergy(w.wedge->params, w.wedge->kappa * e.wedge[i]);
     energy += RimEnergy(p.centre_plate, e.rim[i]);
   }
   for (int b = 0; b < kBogies; ++b) {
     energy += spring(p.bolster_guide, e.guide_x[b]);
     energy += 0.5 * p.centre_plate.stiffness_n_per_m * e.plate_x[b] * e.plate_x[b];
   }
-  for (int i = 0; i < kBodies; ++i) energy += kGravity * w.mass_kg[i] * s.position.z[i];
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) energy += kGravity * w.mass_kg[i] * s.position.z[i];
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     const RailHeight<double> rail =
         RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
@@ -163,5 +194,14 @@ double PotentialEnergy(const Wagon& w, const Track& track, const WagonState<doub
   }
   return energy;
 }
+
+template struct BogieVehicle<2>;
+template struct BogieVehicle<3>;
+template WagonState<double, 2> StaticEquilibrium(const BogieVehicle<2>&, double, double);
+template WagonState<double, 3> StaticEquilibrium(const BogieVehicle<3>&, double, double);
+template double KineticEnergy(const BogieVehicle<2>&, const WagonState<double, 2>&);
+template double KineticEnergy(const BogieVehicle<3>&, const WagonState<double, 3>&);
+template double PotentialEnergy(const BogieVehicle<2>&, const Track&, const WagonState<double, 2>&);
+template double PotentialEnergy(const BogieVehicle<3>&, const Track&, const WagonState<double, 3>&);
 
 }  // namespace train_dynamics

@@ -72,7 +72,7 @@ class Board {
   Elevation elevation_;
   double window_m_;  ///< length of track that is seen
   double vertical_exaggeration_;
-  std::vector<train_dynamics::BodyVector<double>> at_rest_;  ///< [type of vehicle]
+  std::vector<CloseUp::Bodies> at_rest_;  ///< [type of vehicle]
 
   Seen forces_seen_, pressures_seen_;
   GrowingLimit force_limit_kn_, pressure_limit_kpa_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -18,9 +19,20 @@ namespace train_brake_rviz {
 /// Bodies are drawn to scale; their motion against the wagon at rest, and dips of the rail, are exaggerated.
 class CloseUp {
  public:
+  /// Positions of the bodies of a vehicle with up to three wheelsets per bogie.
+  using Bodies = train_dynamics::BodyVector<double, 3>;
+  template <int kPerBogie>
+  static Bodies BodiesOf(const train_dynamics::BodyVector<double, kPerBogie>& position) {
+    Bodies bodies;
+    std::copy(position.x.begin(), position.x.end(), bodies.x.begin());
+    std::copy(position.z.begin(), position.z.end(), bodies.z.begin());
+    std::copy(position.pitch.begin(), position.pitch.end(), bodies.pitch.begin());
+    return bodies;
+  }
+
   /// @param at_rest  positions of the bodies of the wagon at rest
-  CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle,
-          const train_dynamics::BodyVector<double>& at_rest, double motion_exaggeration);
+  CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle, const Bodies& at_rest,
+          double motion_exaggeration);
 
   /// What is known of the wagon.
   struct Sight {
@@ -35,8 +47,7 @@ class CloseUp {
 
   /// Where a point of a body is drawn.
   /// @param offset_forward_m, offset_up_m  from the body's centre of gravity, in the body
-  Point PlaceOf(const train_dynamics::BodyVector<double>& position, int body, double offset_forward_m,
-                double offset_up_m) const;
+  Point PlaceOf(const Bodies& position, int body, double offset_forward_m, double offset_up_m) const;
   double scale() const { return scale_; }  ///< board units per metre
   double rail() const { return rail_; }    ///< height of the level rail on the board
 
@@ -45,19 +56,17 @@ class CloseUp {
 
  private:
   void DrawRail(Drawing& drawing, const train_dynamics::Track& track, double centre_m) const;
-  void DrawBodies(Drawing& drawing, const train_dynamics::BodyVector<double>& position, Color body) const;
-  void DrawWheelset(Drawing& drawing, const train_dynamics::BodyVector<double>& position, int wheelset,
-                    bool slides) const;
+  void DrawBodies(Drawing& drawing, const Bodies& position, Color body) const;
+  void DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides) const;
   void DrawContactForces(Drawing& drawing, const train_dynamics::WagonDetail& detail) const;
-  void DrawCouplerForce(Drawing& drawing, const train_dynamics::BodyVector<double>& position, double end,
-                        double force_n) const;
+  void DrawCouplerForce(Drawing& drawing, const Bodies& position, double end, double force_n) const;
 
   Rectangle area_;
   train_dynamics::VehicleParams vehicle_;
-  train_dynamics::BodyVector<double> at_rest_;
+  Bodies at_rest_;
   double exaggeration_;
   double scale_, rail_;
-  std::array<double, train_dynamics::kBodies> forward_m_, height_m_;  ///< of the bodies' centres at rest
+  std::array<double, train_dynamics::kBodiesOf<3>> forward_m_, height_m_;  ///< of the bodies' centres at rest
 };
 
 }  // namespace train_brake_rviz

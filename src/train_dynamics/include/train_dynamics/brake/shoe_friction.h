@@ -27,15 +27,36 @@ T ShoeFriction(const ShoeFrictionParams& p, T speed) {
          (2.0 * v_kmh + p.reference_speed_kmh);
 }
 
+/// What the brake shoes hang on, and with it what the torques on the wheelsets react on (2D model).
+enum class BrakeReaction {
+  kFrame,    ///< shoes on the bogie frame: it gets the opposite of the torque of each of its wheelsets
+  kCarbody,  ///< shoes on the carbody; bearings, traction and dynamic brake react on the frame
+  kNone      ///< the paper's simplification: all torques act on the wheelsets as if from outside
+};
+
+/// The speed of which the friction between shoe and tread is a function (2D model).
+enum class FrictionSpeed {
+  kTread,   ///< |omega r| of each wheelset
+  kVehicle  ///< that of the carbody
+};
+
 /// Brake rigging of a vehicle: from cylinder pressure to the shoes' tangential force.
 struct BrakeRiggingParams {
   double shoe_load_per_pressure_n_per_pa = kRequired;  ///< C, normal load of all shoes per cylinder pressure
   ShoeFrictionParams shoe_friction;
+  BrakeReaction reaction = BrakeReaction::kFrame;
+  FrictionSpeed friction_speed = FrictionSpeed::kTread;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("shoe_load_per_pressure_n_per_pa", shoe_load_per_pressure_n_per_pa, kNonNegative);
     v.Group("shoe_friction", shoe_friction);
+    v.Choice("reaction", reaction,
+             {{"frame", BrakeReaction::kFrame},
+              {"carbody", BrakeReaction::kCarbody},
+              {"none", BrakeReaction::kNone}});
+    v.Choice("friction_speed", friction_speed,
+             {{"tread", FrictionSpeed::kTread}, {"vehicle", FrictionSpeed::kVehicle}});
   }
 };
 

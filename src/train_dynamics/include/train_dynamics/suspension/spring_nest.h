@@ -14,6 +14,7 @@ struct SpringNestParams {
   double solid_stiffness_n_per_m = kRequired;
   double rebound_clearance_m = kRequired;  ///< extension at which the bolster meets the rebound stop
   double offset_m = kRequired;             ///< of the half nest before and behind the bolster's centre
+  double damping_ns_per_m = 0.0;           ///< of a linear damper beside the half nest
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -24,6 +25,7 @@ struct SpringNestParams {
     v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
     v.Number("rebound_clearance_m", rebound_clearance_m, kNonNegative);
     v.Number("offset_m", offset_m, kNonNegative);
+    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative);
   }
 };
 

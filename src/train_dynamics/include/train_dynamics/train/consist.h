@@ -61,6 +61,8 @@ struct TrainParams {
   }
 
   int VehicleCount() const;
+  /// @param index  from 0, below VehicleCount()
+  const VehicleParams& VehicleAt(int index) const;
 };
 
 /// A train vehicle by vehicle. Vehicles count from 0 here, from 1 in everything that people read.

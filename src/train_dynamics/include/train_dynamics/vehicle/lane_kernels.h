@@ -33,8 +33,10 @@ struct LaneKernels {
   const char* instruction_set;
   int lanes;
   StepPacks<Wagon> step_wagons;
+  StepPacks<SixAxleVehicle> step_six_axle;
   StepPacks<LtdVehicle> step_ltd;
   RecordPack<Wagon> record_wagons;
+  RecordPack<SixAxleVehicle> record_six_axle;
   RecordPack<LtdVehicle> record_ltd;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "train_dynamics/brake/shoe_friction.h"
@@ -35,13 +37,18 @@ struct WheelsetParams {
   double mass_kg = kRequired;
   double pitch_inertia_kgm2 = kRequired;  ///< J, of the rotation
   double wheel_radius_m = kRequired;      ///< r
+  bool accept_large_inertia = false;      ///< no warning of a J above m r^2
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("mass_kg", mass_kg, kPositive);
     v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
     v.Number("wheel_radius_m", wheel_radius_m, kPositive);
+    v.Flag("accept_large_inertia", accept_large_inertia);
   }
+
+  /// J / (m r^2) [-]: 1 if all mass were at the tread; no wheelset can have more.
+  double InertiaRatio() const { return pitch_inertia_kgm2 / (mass_kg * wheel_radius_m * wheel_radius_m); }
 };
 
 /// Contact of one wheel with its rail; two per wheelset.
@@ -62,7 +69,7 @@ struct WheelRailParams {
   }
 };
 
-/// A four-axle vehicle on two three-piece bogies: all that its LTD and its 2D model need.
+/// A vehicle on two bogies of two or three wheelsets each: all that its LTD and its 2D model need.
 struct VehicleParams {
   std::string name;
   double length_m = kRequired;  ///< over couplers
@@ -72,13 +79,16 @@ struct VehicleParams {
   WheelsetParams wheelset;
   double wedge_mass_kg = kRequired;  ///< of one of the eight wedges; moves with its bolster
   double half_bogie_spacing_m = kRequired;
-  double half_wheelset_spacing_m = kRequired;
-  double coupler_height_m = kRequired;  ///< above rail
+  int wheelsets_per_bogie = 2;                 ///< 2 or 3
+  double half_wheelset_spacing_m = kRequired;  ///< of the outer wheelsets of a bogie from its centre
+  double middle_wheelset_offset_m = 0.0;  ///< of the middle one of three from the bogie's centre, positive
+                                          ///< away from the vehicle's centre
+  double coupler_height_m = kRequired;    ///< above rail
   WheelRailParams wheel_rail;
-  LinearSpringDamper adaptor_pad;      ///< one of two per wheelset; the same in x and z
-  SpringNestParams spring_nest;        ///< a quarter of a bogie
-  FrictionWedgeParams friction_wedge;  ///< one of four per bogie
-  LinearSpringDamper bolster_guide;    ///< longitudinal, bolster in frame
+  LinearSpringDamper adaptor_pad;                     ///< one of two per wheelset; the same in x and z
+  SpringNestParams spring_nest;                       ///< a quarter of a bogie
+  std::optional<FrictionWedgeParams> friction_wedge;  ///< one of four per bogie; not given: no wedges
+  LinearSpringDamper bolster_guide;                   ///< longitudinal, bolster in frame
   double bolster_guide_height_m = kRequired;
   CentrePlateParams centre_plate;
   BrakeRiggingParams brake_rigging;
@@ -94,7 +104,9 @@ struct VehicleParams {
     v.Group("wheelset", wheelset);
     v.Number("wedge_mass_kg", wedge_mass_kg, kNonNegative);
     v.Number("half_bogie_spacing_m", half_bogie_spacing_m, kPositive);
+    v.Integer("wheelsets_per_bogie", wheelsets_per_bogie, Range{2.0, 3.0, false, false});
     v.Number("half_wheelset_spacing_m", half_wheelset_spacing_m, kPositive);
+    v.Number("middle_wheelset_offset_m", middle_wheelset_offset_m, kFinite);
     v.Number("coupler_height_m", coupler_height_m, kPositive);
     v.Group("wheel_rail", wheel_rail);
     v.Group("adaptor_pad", adaptor_pad);
@@ -105,15 +117,24 @@ struct VehicleParams {
     v.Group("centre_plate", centre_plate);
     v.Group("brake_rigging", brake_rigging);
     v.Group("propulsion_resistance", propulsion_resistance);
+    v.Check(wheelsets_per_bogie == 3 || middle_wheelset_offset_m == 0.0, "middle_wheelset_offset_m",
+            "belongs to wheelsets_per_bogie 3 only", {"wheelsets_per_bogie"});
+    v.Check(std::abs(middle_wheelset_offset_m) < half_wheelset_spacing_m, "middle_wheelset_offset_m",
+            "must lie between the outer wheelsets, at most half_wheelset_spacing_m from the bogie's centre",
+            {"half_wheelset_spacing_m"});
+    v.Check(friction_wedge.has_value() || wedge_mass_kg == 0.0, "friction_wedge",
+            "must be given, or wedge_mass_kg be 0 for a vehicle without wedges", {"wedge_mass_kg"});
     v.Check(2.0 * (half_bogie_spacing_m + half_wheelset_spacing_m) < length_m, "length_m",
             "must exceed the distance between the outer wheelsets",
             {"half_bogie_spacing_m", "half_wheelset_spacing_m"});
   }
 
+  int Wheelsets() const { return 2 * wheelsets_per_bogie; }
+
   /// Mass of the whole vehicle [kg].
   double TotalMass() const {
     return carbody.mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) + 2.0 * bogie_frame.mass_kg +
-           4.0 * wheelset.mass_kg;
+           Wheelsets() * wheelset.mass_kg;
   }
   double Weight() const { return kGravity * TotalMass(); }  ///< [N]
 };

@@ -9,45 +9,48 @@ namespace train_dynamics {
 ///   1. half drift: positions to the middle of the step;
 ///   2. compliant forces there, dampers at the rates of the step's start (largest elastic frequency about
 ///      1000 1/s, so that 1 ms is inside the explicit limit), weight, couplers, drag;
-///   3. kick of carbody, bolsters and frames, with the wedges' set-valued friction as a complementarity problem
-///      on the relative rates at the END of the step: they stick or slip without chatter;
-///   4. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
+///   3. kick of the wheelsets, with the creep forces implicit and the brake torque set-valued (StepRolling);
+///   4. kick of carbody, bolsters and frames, which get the opposite of the torques of step 3
+///      (AddReactions), with the wedges' set-valued friction as a complementarity problem on the relative
+///      rates at the END of the step: they stick or slip without chatter;
 ///   5. half drift.
 ///
 /// A force times the mean of the rates before and after is its exact work in the step: the ledger books that.
-/// Left out: the moment by which brake shoes turn the bogie frames, and the wedges' own inertia.
+/// Left out: the wedges' own inertia; and a locked wheel is held against the ground, omega = 0, not against its
+/// frame, whose pitch rate is 1e-3 of the wheels' at most.
 ///
 /// @param output  receives the step's contact and friction forces; may be null
-template <class T>
-void StepWagon(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T>& s, WagonOutput<T>* output);
+template <class T, int kPerBogie>
+void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
+               double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// q += h v
-template <class T>
-void Drift(const BodyVector<T>& v, double h, BodyVector<T>& q) {
-  for (int i = 0; i < kBodies; ++i) {
+template <class T, int kPerBogie>
+void Drift(const BodyVector<T, kPerBogie>& v, double h, BodyVector<T, kPerBogie>& q) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     q.x[i] = q.x[i] + h * v.x[i];
     q.z[i] = q.z[i] + h * v.z[i];
     q.pitch[i] = q.pitch[i] + h * v.pitch[i];
   }
 }
 
-/// Contact forces between the four wheelsets and the rail at the step's middle.
-template <class T>
+/// Contact forces between the wheelsets and the rail at the step's middle.
+template <class T, int kPerBogie = 2>
 struct RailForces {
-  std::array<T, kWheelsets> normal{};   ///< N of both wheels [N]
-  std::array<T, kWheelsets> damping{};  ///< the part of N that is not elastic [N]
-  std::array<T, kWheelsets> slope{};    ///< of the rail [-]
-  std::array<RailSurface<T>, kWheelsets> surface;
+  std::array<T, kWheelsetsOf<kPerBogie>> normal{};   ///< N of both wheels [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> damping{};  ///< the part of N that is not elastic [N]
+  std::array<T, kWheelsetsOf<kPerBogie>> slope{};    ///< of the rail [-]
+  std::array<RailSurface<T>, kWheelsetsOf<kPerBogie>> surface;
 };
 
-template <class T>
-RailForces<T> ContactForces(const Wagon& w, const Track& track, const WagonState<T>& s) {
+template <class T, int kPerBogie>
+RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
+                                       const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
-  RailForces<T> rail;
-  for (int i = 0; i < kWheelsets; ++i) {
+  RailForces<T, kPerBogie> rail;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
     const RailHeight<T> point = RailHeightUnder(track, at);
@@ -72,23 +75,25 @@ RailForces<T> ContactForces(const Wagon& w, const Track& track, const WagonState
 ///
 /// Projected Gauss-Seidel; the coupling |a-b| / (a+b) is about 0.07, so that each sweep gains a factor of
 /// 200.
-template <class T>
-std::array<T, 4> WedgeFrictionForces(const Wagon& w, const std::array<T, 4>& deflection,
-                                     const std::array<T, 4>& rate, const std::array<T, 4>& free_rate,
-                                     double dt) {
+template <class T, int kPerBogie>
+std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
+                                             const std::array<T, kQuarters>& deflection,
+                                             const std::array<T, kQuarters>& rate,
+                                             const std::array<T, kQuarters>& free_rate, double dt) {
   constexpr int kSweeps = 4;
-  std::array<T, 4> f{};
+  std::array<T, kQuarters> f{};
+  if (!w.wedge) return f;
   for (int bogie = 0; bogie < kBogies; ++bogie) {
     const int bolster = kFrontBolster + bogie, frame = kFrontFrame + bogie;
     const double a = w.inv_mass_per_kg[bolster] + w.inv_mass_per_kg[frame];
-    const double offset = w.params.friction_wedge.offset_m;
+    const double offset = w.wedge->params.offset_m;
     const double b = offset * offset * (w.inv_inertia_per_kgm2[bolster] + w.inv_inertia_per_kgm2[frame]);
     const double own = dt * (a + b), other = dt * (a - b), inv_own = 1.0 / own;
     WedgeFrictionBounds<T> bounds[2];
     for (int end = 0; end < 2; ++end) {
-      const T travel = w.wedge.kappa * deflection[2 * bogie + end];
-      bounds[end] = WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.params.friction_wedge, travel),
-                                  rate[2 * bogie + end]);
+      const T travel = w.wedge->kappa * deflection[2 * bogie + end];
+      bounds[end] =
+          WedgeFriction(*w.wedge, 2.0 * WedgeSpringForce(w.wedge->params, travel), rate[2 * bogie + end]);
     }
     const T c0 = free_rate[2 * bogie], c1 = free_rate[2 * bogie + 1];
     T f0(0.0), f1(0.0);
@@ -103,8 +108,9 @@ std::array<T, 4> WedgeFrictionForces(const Wagon& w, const std::array<T, 4>& def
 }
 
 /// Velocities after the forces have acted for dt on the bodies [begin, end).
-template <class T>
-void Kick(const Wagon& w, const BodyVector<T>& force, double dt, int begin, int end, BodyVector<T>& v) {
+template <class T, int kPerBogie>
+void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& force, double dt, int begin,
+          int end, BodyVector<T, kPerBogie>& v) {
   for (int i = begin; i < end; ++i) {
     v.x[i] = v.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
     v.z[i] = v.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
@@ -115,35 +121,43 @@ void Kick(const Wagon& w, const BodyVector<T>& force, double dt, int begin, int 
 /// What acts on the wagon from outside in a step.
 template <class T>
 struct OuterForces {
-  T grade;                                   ///< of the track [-]
-  T coupler;                                 ///< of both couplers together, forward positive [N]
-  T drag;                                    ///< of the air on the carbody, backwards positive [N]
-  T shoes, rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
-  T traction;                                ///< at one wheelset, forward positive [N]
+  T grade;                            ///< of the track [-]
+  T coupler;                          ///< of both couplers together, forward positive [N]
+  T drag;                             ///< of the air on the carbody, backwards positive [N]
+  T shoe_load;                        ///< normal load of the shoes of one wheelset [N], >= 0
+  T shoes;                            ///< their largest friction at the vehicle's speed [N], >= 0
+  T rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
+  T traction;                         ///< at one wheelset, forward positive [N]
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
-template <class T>
-OuterForces<T> OuterForcesOn(const Wagon& w, const Track& track, const VehicleLoads<T>& loads,
-                             const WagonState<T>& s) {
+template <class T, int kPerBogie>
+OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& track,
+                             const VehicleLoads<T>& loads, const WagonState<T, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const T speed = s.velocity.x[kCarbody];
   OuterForces<T> outer;
   outer.grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
   outer.coupler = loads.front_coupler_n - loads.rear_coupler_n;
   outer.drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
-  outer.shoes = 0.25 * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
-  outer.rolling = 0.25 * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
-  outer.dynamic_brake = 0.25 * loads.dynamic_brake_n;
-  outer.curving = 0.25 * loads.curving_resistance_n;
-  outer.traction = 0.25 * loads.traction_n;
+  constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
+  outer.shoe_load = kShare * p.brake_rigging.shoe_load_per_pressure_n_per_pa * loads.cylinder_pressure_pa;
+  outer.shoes = T(0.0);
+  if (p.brake_rigging.friction_speed == FrictionSpeed::kVehicle) {
+    outer.shoes = kShare * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+  }
+  outer.rolling = kShare * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
+  outer.dynamic_brake = kShare * loads.dynamic_brake_n;
+  outer.curving = kShare * loads.curving_resistance_n;
+  outer.traction = kShare * loads.traction_n;
   return outer;
 }
 
 /// Adds weight, couplers and drag to the bodies' forces.
-template <class T>
-void AddOuterForces(const Wagon& w, const OuterForces<T>& outer, BodyVector<T>& force) {
-  for (int i = 0; i < kBodies; ++i) {
+template <class T, int kPerBogie>
+void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                    BodyVector<T, kPerBogie>& force) {
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     const double weight = kGravity * w.mass_kg[i];
     force.x[i] = force.x[i] - weight * outer.grade;
     force.z[i] = force.z[i] - weight;
@@ -152,22 +166,26 @@ void AddOuterForces(const Wagon& w, const OuterForces<T>& outer, BodyVector<T>& 
   force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * outer.coupler;
 }
 
-/// Sums over the wheelsets of a step.
-template <class T>
-struct WheelsetWork {
-  T creep{}, contact{};             ///< energy lost in creep and in the contacts' dampers [J]
-  T brake_path{}, traction_path{};  ///< way at the tread, times the share of the brake torque that acts [m]
+/// What a step made of the wheelsets.
+template <class T, int kPerBogie = 2>
+struct WheelsetStep {
+  using PerWheelset = std::array<T, kWheelsetsOf<kPerBogie>>;
+  PerWheelset shoes{};  ///< largest friction of the shoes of each [N], >= 0
+  PerWheelset
+      mobilised{};       ///< the share of the retarding torque that acts, -1 ... 1; forward turning: positive
+  T creep{}, contact{};  ///< energy lost in creep and in the contacts' dampers [J]
 };
 
 /// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
 /// @param shape_of  what the law of a surface takes beside mu0: of one surface for all lanes, or by lane
-template <class T, class ShapeOf>
-std::array<RollingResult<T>, kWheelsets> RollOn(const Wagon& w, const RailForces<T>& rail,
-                                                const std::array<RollingInput<T>, kWheelsets>& rolling,
-                                                double dt, const BodyVector<T>& v0, const ShapeOf& shape_of) {
+template <class T, int kPerBogie, class ShapeOf>
+std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
+    const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
+    const BodyVector<T, kPerBogie>& v0, const ShapeOf& shape_of) {
   using Law = decltype(FreezeCreepLaw(shape_of(rail.surface[0]), 0.0, T(), T(), T(), 0.0));
-  std::array<Law, kWheelsets> law;
-  for (int i = 0; i < kWheelsets; ++i) {
+  std::array<Law, kWheelsetsOf<kPerBogie>> law;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const RailSurface<T>& surface = rail.surface[i];
     law[i] = FreezeCreepLaw(shape_of(surface), w.creep_stiffness, rail.normal[i], surface.friction,
                             v0.x[kWheelset1 + i], w.params.wheel_rail.creepage_regularisation_speed_mps);
@@ -177,42 +195,52 @@ std::array<RollingResult<T>, kWheelsets> RollOn(const Wagon& w, const RailForces
 
 /// RollOn where vehicles side by side meet different surfaces. A function of its own, so that the step of all
 /// others does not grow.
-template <class T>
-[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsets> RollOnMixedSurfaces(
-    const Wagon& w, const RailForces<T>& rail, const std::array<RollingInput<T>, kWheelsets>& rolling,
-    double dt, const BodyVector<T>& v0) {
+template <class T, int kPerBogie>
+[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixedSurfaces(
+    const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
+    const BodyVector<T, kPerBogie>& v0) {
   return RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) { return ShapeOf(surface); });
 }
 
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
-template <class T>
-WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const OuterForces<T>& outer,
-                              const BodyVector<T>& force, double dt, const BodyVector<T>& v0,
-                              BodyVector<T>& v1, WagonOutput<T>* output) {
+template <class T, int kPerBogie>
+WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
+                                         const RailForces<T, kPerBogie>& rail, const OuterForces<T>& outer,
+                                         const BodyVector<T, kPerBogie>& force, double dt,
+                                         const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1,
+                                         WagonOutput<T, kPerBogie>* output) {
   const WheelRailParams& contact = w.params.wheel_rail;
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
-  const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
-  std::array<RollingInput<T>, kWheelsets> rolling;
+  const BrakeRiggingParams& rigging = w.params.brake_rigging;
+  const bool by_tread = rigging.friction_speed == FrictionSpeed::kTread;
+  WheelsetStep<T, kPerBogie> step;
+  std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
   bool mixed = false;
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     mixed |= rail.surface[i].adhesion == nullptr;
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
+    T shoes = outer.shoes, holding_shoes = shoes;
+    if (by_tread) {
+      shoes = outer.shoe_load * ShoeFriction(rigging.shoe_friction, r * v0.pitch[b]);
+      holding_shoes = outer.shoe_load * rigging.shoe_friction.standstill_friction_coefficient;
+    }
+    step.shoes[i] = shoes;
     rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
-                  r * retarding};
+                  r * (shoes + outer.rolling + outer.dynamic_brake + outer.curving),
+                  r * (holding_shoes + outer.rolling + outer.dynamic_brake + outer.curving)};
   }
-  const std::array<RollingResult<T>, kWheelsets> rolled =
+  const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
       mixed ? RollOnMixedSurfaces(w, rail, rolling, dt, v0)
             : RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) -> const AdhesionParams& {
                 return *surface.adhesion;
               });
 
-  WheelsetWork<T> work;
-  for (int i = 0; i < kWheelsets; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    const RollingInput<T>& in = rolling[i];
     const RollingResult<T>& out = rolled[i];
     v1.x[b] = out.speed;
     v1.pitch[b] = out.spin;
@@ -221,33 +249,89 @@ WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const O
     const T turned = 0.5 * dt * (v0.pitch[b] + out.spin);
     const T moved = 0.5 * dt * (v0.x[b] + out.speed);
     const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
-    const T mobilised = out.brake_torque / Max(T(1e-300), in.brake_torque);  // -1 ... 1
-    work.creep = work.creep + out.creep_force * (moved - r * turned);
-    work.contact = work.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
-    work.brake_path = work.brake_path + mobilised * r * turned;
-    work.traction_path = work.traction_path + r * turned;
+    step.mobilised[i] = out.brake_torque / Max(T(1e-300), rolling[i].brake_torque);
+    step.creep = step.creep + out.creep_force * (moved - r * turned);
+    step.contact = step.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
       output->creep_force_n[i] = out.creep_force;
       output->creepage[i] = (out.speed - r * out.spin) / Sqrt(out.speed * out.speed + v_ref * v_ref);
-      output->shoe_force_n[i] = outer.shoes * mobilised;
+      output->shoe_force_n[i] = step.shoes[i] * step.mobilised[i];
     }
   }
-  return work;
+  return step;
 }
 
-/// Books the work of a step: force x mean rate x dt, element by element.
+/// Adds to the bodies' forces what the torques on the wheelsets react with:
+///
+///   M_frame += r [ mobilised (S + R + F_db) - F_t ]   over the wheelsets of the bogie, nose down positive
+///
+/// S, the shoes' friction, on the carbody where they hang on it. Curving resistance comes from the rail and
+/// reacts on no body.
+template <class T, int kPerBogie>
+void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                  const WheelsetStep<T, kPerBogie>& wheelsets, BodyVector<T, kPerBogie>& force) {
+  const BrakeReaction reaction = w.params.brake_rigging.reaction;
+  if (reaction == BrakeReaction::kNone) return;
+  const double r = w.rolling.radius_m;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+    const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
+    const T& share = wheelsets.mobilised[i];
+    force.pitch[hanger] = force.pitch[hanger] + r * (share * wheelsets.shoes[i]);
+    force.pitch[frame] =
+        force.pitch[frame] + r * (share * (outer.rolling + outer.dynamic_brake) - outer.traction);
+  }
+}
+
+/// Books the work of the torques on the wheelsets: of each with the rotation of the wheelset relative to the
+/// body that it reacts on.
+template <class T, int kPerBogie>
+void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                 const WheelsetStep<T, kPerBogie>& wheelsets, double dt, const BodyVector<T, kPerBogie>& v0,
+                 const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
+  const BrakeReaction reaction = w.params.brake_rigging.reaction;
+  const double half = 0.5 * dt * w.rolling.radius_m;
+  T shoes(0.0), curving(0.0), bearing_path(0.0), traction_path(0.0);
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int b = kWheelset1 + i, frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+    const T path = half * (v0.pitch[b] + v1.pitch[b]);
+    T of_shoes = path, of_frame = path;
+    if (reaction != BrakeReaction::kNone) {
+      of_frame = path - half * (v0.pitch[frame] + v1.pitch[frame]);
+      of_shoes = reaction == BrakeReaction::kFrame ? of_frame
+                                                   : path - half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
+    }
+    shoes = shoes + wheelsets.shoes[i] * (wheelsets.mobilised[i] * of_shoes);
+    bearing_path = bearing_path + wheelsets.mobilised[i] * of_frame;
+    curving = curving + outer.curving * (wheelsets.mobilised[i] * path);
+    traction_path = traction_path + of_frame;
+  }
+  const auto book = [&work](Dissipation element, const T& energy) {
+    work.dissipated[element] = work.dissipated[element] + energy;
+  };
+  book(kBrakeShoes, shoes);
+  book(kDynamicBrake, outer.dynamic_brake * bearing_path);
+  book(kRollingResistance, outer.rolling * bearing_path);
+  book(kCurvingResistance, curving);
+  work.traction = work.traction + outer.traction * traction_path;
+}
+
+/// Books the work of a step but for the torques: force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
-template <class T>
-void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>& wheelsets,
-              const ElementVector<T>& dissipative, const ElementVector<T>& rate0, double dt,
-              const BodyVector<T>& v0, const BodyVector<T>& v1, VehicleWork<T>& work) {
-  const ElementVector<T> rate1 = ElementsOf(w, v1);
+template <class T, int kPerBogie>
+void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+              const WheelsetStep<T, kPerBogie>& wheelsets, const ElementVector<T, kPerBogie>& dissipative,
+              const ElementVector<T, kPerBogie>& rate0, double dt, const BodyVector<T, kPerBogie>& v0,
+              const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
+  const ElementVector<T, kPerBogie> rate1 = ElementsOf(w, v1);
   const auto lost = [dt](const T& f, const T& r0, const T& r1) { return 0.5 * dt * f * (r0 + r1); };
   T pads(0.0), wedges(0.0), guides(0.0), plates(0.0);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     pads = pads + lost(dissipative.pad_x[i], rate0.pad_x[i], rate1.pad_x[i]) +
            lost(dissipative.pad_z[i], rate0.pad_z[i], rate1.pad_z[i]);
+  }
+  for (int i = 0; i < kQuarters; ++i) {
     wedges = wedges + lost(dissipative.wedge[i], rate0.wedge[i], rate1.wedge[i]);
     plates = plates + lost(dissipative.rim[i], rate0.rim[i], rate1.rim[i]);
   }
@@ -256,7 +340,7 @@ void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>
     plates = plates + lost(dissipative.plate_x[b], rate0.plate_x[b], rate1.plate_x[b]);
   }
   T mass_path(0.0);  // sum of mass x (v0 + v1): the grade acts on every body
-  for (int i = 0; i < kBodies; ++i) mass_path = mass_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
+  for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) mass_path = mass_path + w.mass_kg[i] * (v0.x[i] + v1.x[i]);
 
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
@@ -267,49 +351,54 @@ void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>
   book(kFrictionWedges, wedges);
   book(kBolsterGuides, guides);
   book(kCentrePlates, plates);
-  book(kBrakeShoes, outer.shoes * wheelsets.brake_path);
-  book(kDynamicBrake, outer.dynamic_brake * wheelsets.brake_path);
-  book(kRollingResistance, outer.rolling * wheelsets.brake_path);
-  book(kCurvingResistance, outer.curving * wheelsets.brake_path);
   book(kAirDrag, lost(outer.drag, v0.x[kCarbody], v1.x[kCarbody]));
+  if (w.params.spring_nest.damping_ns_per_m > 0.0) {
+    T dampers(0.0);
+    for (int i = 0; i < kQuarters; ++i) {
+      dampers = dampers + lost(dissipative.nest[i], rate0.nest[i], rate1.nest[i]);
+    }
+    book(kNestDampers, dampers);
+  }
   work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
-  work.traction = work.traction + outer.traction * wheelsets.traction_path;
 }
 
-template <class T>
-void StepWagon(const Wagon& w, const Track& track, const VehicleLoads<T>& loads, double dt, WagonState<T>& s,
-               WagonOutput<T>* output) {
-  const BodyVector<T> v0 = s.velocity;
-  BodyVector<T>& v1 = s.velocity;
+template <class T, int kPerBogie>
+void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+  const BodyVector<T, kPerBogie> v0 = s.velocity;
+  BodyVector<T, kPerBogie>& v1 = s.velocity;
   Drift(v0, 0.5 * dt, s.position);
 
   // Forces at the middle of the step.
-  const ElementVector<T> deflection = ElementsOf(w, s.position);
-  const ElementVector<T> rate0 = ElementsOf(w, v0);
-  const ElementVector<T> elastic = ElasticForces(w, deflection);
-  ElementVector<T> dissipative = DampingForces(w, deflection, elastic, rate0);
-  const RailForces<T> rail = ContactForces(w, track, s);
+  const ElementVector<T, kPerBogie> deflection = ElementsOf(w, s.position);
+  const ElementVector<T, kPerBogie> rate0 = ElementsOf(w, v0);
+  const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
+  ElementVector<T, kPerBogie> dissipative = DampingForces(w, deflection, elastic, rate0);
+  const RailForces<T, kPerBogie> rail = ContactForces(w, track, s);
   const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
-  BodyVector<T> force;
+  BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
   AddElementForces(w, dissipative, force);
   AddOuterForces(w, outer, force);
 
+  const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
+  AddReactions(w, outer, wheelsets, force);
+
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
-  ElementVector<T> friction{};
+  ElementVector<T, kPerBogie> friction{};
   friction.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
-  BodyVector<T> friction_force;
+  BodyVector<T, kPerBogie> friction_force;
   AddElementForces(w, friction, friction_force);
   Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
 
-  const WheelsetWork<T> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
   if (output != nullptr) output->wedge_friction_n = friction.wedge;
 
   Drift(v1, 0.5 * dt, s.position);
 
   dissipative.wedge = friction.wedge;
   BookWork(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
+  BookTorques(w, outer, wheelsets, dt, v0, v1, s.work);
 }
 
 }  // namespace train_dynamics

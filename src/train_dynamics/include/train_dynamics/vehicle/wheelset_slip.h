@@ -14,7 +14,8 @@ struct RollingInput {
   T speed;            ///< v at the end of the step if there were no creep force [m/s]
   T spin;             ///< omega at the start of the step [rad/s]
   T traction_torque;  ///< [Nm], forward positive
-  T brake_torque;     ///< largest torque that brakes and resistance can exert [Nm], >= 0
+  T brake_torque;    ///< largest torque that brakes and resistance can exert on the turning wheels [Nm], >= 0
+  T holding_torque;  ///< the same on wheels that stand [Nm], >= brake_torque
 };
 
 /// The rolling motion at the end of the step and what it took.
@@ -23,7 +24,7 @@ struct RollingResult {
   T speed;         ///< v [m/s]
   T spin;          ///< omega [rad/s]
   T creep_force;   ///< F [N], acts backwards on the wheelset
-  T brake_torque;  ///< T [Nm], acts against positive rotation; |T| <= the largest
+  T brake_torque;  ///< T [Nm], acts against positive rotation; |T| <= the largest of its state
 };
 
 /// Mass properties of a wheelset.
@@ -89,7 +90,8 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
 ///   omega1 = omega + dt (T_t + r F(w1) - T) / J
 ///
 /// T = +-T_max while the wheels turn. Where that would turn them backwards they stop: omega1 = 0, and T is
-/// what holds them, |T| <= T_max. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
+/// what holds them, |T| <= T_hold. Shoes whose friction falls over the tread's speed hold more than they brake:
+/// T_hold >= T_max, the friction being that of standstill. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
 /// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
 /// the train's speed does not betray.
 template <class T, std::size_t kCount, class P = double>
@@ -109,7 +111,7 @@ std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
     stopping[i] = in[i].spin * (1.0 / (dt * inertia.inv_inertia_per_kgm2)) + in[i].traction_torque;
     torque[i] = CopySign(in[i].brake_torque, stopping[i]);
     h[i] = T(h_turning);
-    locked[i] = Abs(stopping[i]) <= in[i].brake_torque + r * law[i].friction_limit;
+    locked[i] = Abs(stopping[i]) <= in[i].holding_torque + r * law[i].friction_limit;
     any_locked |= AnyOf(locked[i]);
   }
   if (any_locked) {  // may stop: find the torque that holds omega1 = 0 and see whether the brake has it
@@ -119,7 +121,7 @@ std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
     for (std::size_t i = 0; i < kCount; ++i) {
       const T most = in[i].brake_torque, holding = stopping[i] + r * sliding[i].force;
       torque[i] = Select(locked[i], Clamp(holding, -most, most), torque[i]);
-      locked[i] = locked[i] & (Abs(holding) <= most);
+      locked[i] = locked[i] & (Abs(holding) <= in[i].holding_torque);
       h[i] = Select(locked[i], T(h_locked), h[i]);
     }
   }

@@ -20,7 +20,8 @@
   X(kDynamicBrake, dynamic_brake)           \
   X(kRollingResistance, rolling_resistance) \
   X(kCurvingResistance, curving_resistance) \
-  X(kAirDrag, air_drag)
+  X(kAirDrag, air_drag)                     \
+  X(kNestDampers, nest_dampers)
 
 /// The energies of one vehicle [J], due where a record has a ledger:
 ///   X(name, numbers of each vehicle, meaning)

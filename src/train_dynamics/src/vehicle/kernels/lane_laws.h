@@ -9,9 +9,9 @@
 /// with it by name, so: packs and plain pointers only.
 namespace train_dynamics {
 
-template <class T>
-void Step(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
-          WagonState<T>& state, WagonOutput<T>* output) {
+template <class T, int kPerBogie>
+void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
+          WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
   StepWagon(wagon, track, loads, dt, state, output);
 }
 
@@ -105,8 +105,10 @@ constexpr LaneKernels KernelsOver(const char* instruction_set) {
   kernels.instruction_set = instruction_set;
   kernels.lanes = kLanesOf<T>;
   kernels.step_wagons = &StepPacks<T, Wagon>;
+  kernels.step_six_axle = &StepPacks<T, SixAxleVehicle>;
   kernels.step_ltd = &StepPacks<T, LtdVehicle>;
   kernels.record_wagons = &RecordPack<T, Wagon>;
+  kernels.record_six_axle = &RecordPack<T, SixAxleVehicle>;
   kernels.record_ltd = &RecordPack<T, LtdVehicle>;
   return kernels;
 }
