@@ -43,7 +43,7 @@ void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message
   for (size_t c = 0; c < connections; ++c) {
     message.coupler_force_n[c] = static_cast<float>(record.held.coupler_force_n[c + 1]);
   }
-  Copy(record.coupler_extension_m, message.coupler_deflection_m);
+  Copy(record.coupler_extension_m, message.coupler_extension_m);
 }
 
 void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {

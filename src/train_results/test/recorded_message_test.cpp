@@ -65,7 +65,7 @@ TEST(RecordedMessage, EveryByteCounts) {
   ExpectEveryByteCounts(Ledger());
   ExpectEveryByteCounts(Wagon());
   train_brake_msgs::InTrainForces forces;
-  forces.coupler_force_n = forces.coupler_deflection_m = {1.0F, 2.0F};
+  forces.coupler_force_n = forces.coupler_extension_m = {1.0F, 2.0F};
   ExpectEveryByteCounts(forces);
   train_brake_msgs::BrakePressures pressures;
   pressures.cylinder_pressure_pa = {1.0F, 2.0F};
@@ -85,12 +85,12 @@ TEST(RecordedMessage, DifferencesNameWhoAndWhat) {
 
   train_brake_msgs::WagonState wagon = Wagon();
   wagon.body_pitch_radps[8] = -1.0;
-  wagon.spring_deflection_m[3] = 0.5F;
+  wagon.nest_compression_m[3] = 0.5F;
   const std::vector<Difference> of_wagon = Compare(BytesOf(wagon), Wagon());
   ASSERT_EQ(of_wagon.size(), 2u);
   EXPECT_EQ(of_wagon[0].text, "vehicle 12, wheelset 4: body_pitch_radps is -1 in the bag, 0 now");
   EXPECT_EQ(of_wagon[1].text,
-            "vehicle 12, rear bogie, rear half: spring_deflection_m is 0.5 in the bag, 0 now");
+            "vehicle 12, rear bogie, rear half: nest_compression_m is 0.5 in the bag, 0 now");
 }
 
 TEST(RecordedMessage, ZerosOfBothSignsDiffer) {

@@ -23,7 +23,7 @@ void ForEachField(Detail& detail, Message& message, Copy copy) {
   copy(detail.output.creepage, message.creepage);
   copy(detail.output.creep_force_n, message.creep_force_n);
   copy(detail.output.shoe_force_n, message.shoe_force_n);
-  copy(detail.nest_compression_m, message.spring_deflection_m);
+  copy(detail.nest_compression_m, message.nest_compression_m);
   copy(detail.output.wedge_friction_n, message.wedge_force_n);
 }
 
