@@ -68,7 +68,7 @@ rviz: deps-rviz build ## run at REAL_TIME_FACTOR (1; 0 = as fast as possible) an
 
 .PHONY: paper
 paper: build ## all scenarios of the paper x three models; its tables and figures beside ours in results/paper/report.html
-	@tools/paper.py devel/lib/ltd_master/train_sim results/paper
+	@tools/paper.py devel/lib/train_sim/train_sim results/paper
 
 .PHONY: test
 test: check-deps deps-rviz build ## build and run all tests
@@ -97,7 +97,7 @@ deps-bench: deps
 
 .PHONY: bench
 bench: deps-bench build ## measure it all, MPI beside it: table here and in docs/performance.md; ONLY=runs,exchange for parts
-	@$(release) train_dynamics_bench ltd_master_bench $(quietly)
+	@$(release) train_dynamics_bench train_results_bench $(quietly)
 	@. devel/setup.bash; PATH=/usr/bin:$$PATH /usr/bin/python3 tools/bench --only '$(ONLY)'
 
 .PHONY: test-cluster

@@ -60,13 +60,13 @@ class Launch:
 
 
 def train_sim(*arguments, scenario=SHORT_TRAIN):
-    done = subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(scenario), *arguments], check=True,
+    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(scenario), *arguments], check=True,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return json.loads(done.stdout)
 
 
 def verify(recording):
-    done = subprocess.run(["rosrun", "ltd_master", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
+    done = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True)
     return done.returncode, done.stdout + done.stderr
 

@@ -37,7 +37,7 @@ FOLDER = tempfile.TemporaryDirectory()
 def simulated(name, scenario, *arguments):
     """The folder of a run of train_sim, made once."""
     folder = pathlib.Path(FOLDER.name) / name
-    subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(CONFIG / "scenarios" / f"{scenario}.yaml"), "--out",
+    subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(CONFIG / "scenarios" / f"{scenario}.yaml"), "--out",
                     str(folder), *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return folder
 
@@ -408,7 +408,7 @@ class ReportTest(unittest.TestCase):
 
     def test_an_interrupted_run_is_marked(self):
         out = self.here / "run"
-        process = subprocess.Popen(["rosrun", "ltd_master", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(out),
+        process = subprocess.Popen(["rosrun", "train_sim", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(out),
                                     "--set", "duration_s=1e4", "--set", "record_interval_s=0.1", "--set",
                                     "ledger_interval_s=1"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -559,7 +559,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn(f"wrote {run}/report.html", done.stdout)
         self.assertTrue((run / "report.html").exists())
         # The next run into the folder takes it away: it would show another run.
-        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(run)], check=True,
+        subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(run)], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.assertFalse((run / "report.html").exists())
 

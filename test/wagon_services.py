@@ -41,7 +41,7 @@ def text_digest(text):
 def resolved_scenario():
     """The scenario as the master sends it, with all parts in place."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
+        subprocess.run(["rosrun", "train_sim", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return (pathlib.Path(folder) / "config.yaml").read_text()
 

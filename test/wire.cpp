@@ -16,9 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "ltd_master/rank_caller.h"
-#include "ltd_master/rank_messages.h"
-#include "ltd_master/ros_transport.h"
+#include "ltd_master/ranks/rank_caller.h"
+#include "ltd_master/ranks/rank_messages.h"
+#include "ltd_master/ranks/ros_transport.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The dependency rules of docs/architecture.md, checked on the include lines.
+# The dependency rules of docs/architecture.md, checked on the include lines. Ends with 1 if one is broken, or if a folder
+# that a rule is about does not exist.
 set -u
 cd "$(dirname "$0")/../src" || exit 1
 status=0
@@ -8,37 +9,58 @@ status=0
 forbid() {
   pattern=$1 rule=$2
   shift 2
+  for path in "$@"; do
+    [ -d "$path" ] && continue
+    printf 'no such folder: src/%s\n  rule: %s\n' "$path" "$rule" >&2
+    status=1
+  done
   found=$(grep -rnE --include='*.h' --include='*.cpp' "^ *# *include *[<\"]($pattern)" "$@" 2>/dev/null)
   [ -z "$found" ] && return
   printf '%s\n  rule: %s\n' "$found" "$rule" >&2
   status=1
 }
 
-# Folders of train_dynamics, headers and sources.
-layers() {
-  for layer in "$@"; do
-    printf '%s\n' train_dynamics/include/train_dynamics/"$layer" train_dynamics/src/"$layer"
+# Headers and, where there are any, sources of rooms of train_dynamics.
+rooms() {
+  for room in "$@"; do
+    echo "train_dynamics/include/train_dynamics/$room"
+    [ ! -d "train_dynamics/src/$room" ] || echo "train_dynamics/src/$room"
   done
 }
-elements="contact suspension coupler brake resistance traction track"
+elements="contact suspension coupler brake resistance track"
 
-forbid '(ros|rosbag|std_msgs|train_brake_msgs|ltd_master|wagon_node)/' \
-  'train_dynamics knows nothing of ROS, messages or nodes' train_dynamics
+forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_dynamics|train_results|train_run|train_sim|ltd_master|wagon_node)/' \
+  'strict_config knows neither trains nor ROS' strict_config
+forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_results|train_run|train_sim|ltd_master|wagon_node)/' \
+  'train_dynamics knows nothing of ROS, messages, results or nodes' train_dynamics
 # shellcheck disable=SC2046,SC2086  # one argument per folder
 {
-  forbid 'yaml-cpp/|train_dynamics/config/' \
-    'only config/ reads YAML; physics gets plain structs' $(layers numeric $elements vehicle train)
-  forbid 'train_dynamics/(contact|suspension|coupler|brake|resistance|traction|track|vehicle|train)/' \
-    'numeric/ stands below all physics' $(layers numeric)
+  forbid 'yaml-cpp/|train_dynamics/config/|strict_config/(reader|writer|part_library|overrides|yaml_tree|scalar|suggestion|text_file)' \
+    'only config/ reads YAML; physics gets plain structs' $(rooms numeric $elements vehicle train)
+  forbid 'train_dynamics/(spring|contact|suspension|coupler|brake|resistance|track|vehicle|train)/' \
+    'numeric/ stands below all physics' $(rooms numeric)
+  forbid 'train_dynamics/(contact|suspension|coupler|brake|resistance|track|vehicle|train)/' \
+    'spring/ holds what several elements are made of' $(rooms spring)
   forbid 'train_dynamics/(vehicle|train)/' \
-    'elements stand below vehicle/ and train/' $(layers $elements)
+    'elements stand below vehicle/ and train/' $(rooms $elements)
+  for element in $elements; do
+    others=$(printf '%s\n' $elements | grep -vx "$element" | paste -sd '|')
+    [ $element != track ] || others=$(echo "$others" | sed 's/contact|//')
+    forbid "train_dynamics/($others)/" 'elements do not lean on each other, but for track: rails have surfaces of contact/' \
+      $(rooms $element)
+  done
   forbid 'train_dynamics/train/' \
-    'vehicle/ stands below train/' $(layers vehicle)
+    'vehicle/ stands below train/' $(rooms vehicle)
 }
+forbid '(ros/ros|ros/node_handle|ros/publisher|train_run|train_sim|ltd_master|wagon_node)' \
+  'results are written and read without a running graph' train_results
+forbid '(ros/ros|train_sim|ltd_master|wagon_node)' 'a run knows neither its program nor a running graph' train_run
+forbid '(ros/ros|ltd_master|wagon_node)' 'train_sim runs without a graph' train_sim
 forbid '(ros|tf2_ros|rviz|Q[A-Z]|[a-z_]+_msgs/)' 'what is drawn (board/) knows nothing of ROS, messages or windows' \
   train_brake_rviz/include/train_brake_rviz/board train_brake_rviz/src/board
-forbid '(ltd_master|wagon_node)/' 'train_brake_rviz meets the run in train_brake_msgs only' train_brake_rviz
-forbid 'wagon_node/' 'ltd_master and wagon_node meet in train_brake_msgs only' ltd_master
-forbid 'ltd_master/' 'ltd_master and wagon_node meet in train_brake_msgs only' wagon_node
+forbid '(train_results|train_run|train_sim|ltd_master|wagon_node)/' 'train_brake_rviz meets the run in train_brake_msgs only' \
+  train_brake_rviz
+forbid '(wagon_node|train_sim)/' 'ltd_master and wagon_node meet in train_brake_msgs only' ltd_master
+forbid '(train_results|train_run|train_sim|ltd_master)/' 'ltd_master and wagon_node meet in train_brake_msgs only' wagon_node
 
 exit $status

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.." || exit 1
 scenario=$(realpath -m "$1")
 out=$(realpath -m "$2")
 shift 2
-vehicles=$(rosrun ltd_master train_sim check "$scenario") || exit 2
+vehicles=$(rosrun train_sim train_sim check "$scenario") || exit 2
 vehicles=$(sed -nE 's/.*: ([0-9]+) vehicle\(s\),.*/\1/p' <<<"$vehicles")
 
 status=$(mktemp)

@@ -76,7 +76,7 @@ chmod +x "$work/env.sh"
 export HOME=$work/home ROS_IP=$net.1 ROS_MASTER_URI=http://$net.1:11311
 scenario=$workspace/config/scenarios/emergency.yaml
 change="duration_s=1"
-expected=$(rosrun ltd_master train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
+expected=$(rosrun train_sim train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
 
 # Where the wagon nodes really are, while they run.
 watch_placement() {
@@ -118,7 +118,7 @@ failed() {
 # Two runs that lose a machine: first its link, for a while (a node that has replied before is not even missed); then
 # the machine itself, for good, and its two nodes are started by hand on another one.
 change="duration_s=8"
-expected=$(rosrun ltd_master train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
+expected=$(rosrun train_sim train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
 
 lose_link() {
   ip link set ${name}v2 down

@@ -66,7 +66,7 @@ def _instructions():
     counts = []
     for steps in (20, 120):
         run = measure.Run(["valgrind", "--tool=cachegrind", "--cachegrind-out-file=/dev/null", "--log-fd=1",
-                           workspace.program("ltd_master", "train_sim"), "run", workspace.EMERGENCY, "--threads", "1",
+                           workspace.program("train_sim", "train_sim"), "run", workspace.EMERGENCY, "--threads", "1",
                            "--set", f"duration_s={steps / 1000:g}"])
         counts.append([int(re.search(rf"{name} +refs: +([0-9,]+)", run.stdout).group(1).replace(",", ""))
                        for name in "ID"])

@@ -10,7 +10,7 @@ from table import Table, number, times
 def run():
     vehicles, train, parts = map(workspace.bench, ("vehicle_bench", "train_bench", "wagon_elements_bench"))
     operations = json.loads(measure.Run([workspace.program("train_dynamics", "wagon_operations")]).stdout)
-    per_record = measure.google_benchmark(workspace.program("ltd_master", "recording_bench"))
+    per_record = measure.google_benchmark(workspace.program("train_results", "recording_bench"))
     ltd, ltd_shares = _ltd_exchange(vehicles, train)
     step, creep_shares = _parts(parts, operations)
     tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), ltd, _recording(per_record), step]

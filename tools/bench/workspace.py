@@ -43,7 +43,7 @@ def commit():
 
 
 def _train_sim(arguments, settings):
-    return [program("ltd_master", "train_sim"), "run", EMERGENCY, *arguments,
+    return [program("train_sim", "train_sim"), "run", EMERGENCY, *arguments,
             *(word for setting in settings for word in ("--set", setting))]
 
 

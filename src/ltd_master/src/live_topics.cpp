@@ -44,11 +44,11 @@ bool LiveTopics::HasListeners() const {
 }
 
 void LiveTopics::Keep(const train_dynamics::TrainRecord& record) {
-  Convert(record, state_);
-  Convert(record, forces_);
-  Convert(record, pressures_);
+  train_results::Convert(record, state_);
+  train_results::Convert(record, forces_);
+  train_results::Convert(record, pressures_);
   for (const train_dynamics::WagonDetail& detail : record.vehicles.details)
-    Convert(record, detail, wagons_[detail.vehicle]);
+    train_results::Convert(record, detail, wagons_[detail.vehicle]);
   status_.header.stamp = state_.header.stamp;
   status_.exchange = record.exchange;
   status_.mean_speed_mps = record.mean_speed_mps;
@@ -74,7 +74,8 @@ void LiveTopics::Publish(const Pace& pace) {
     ros::Publisher& publisher = wagon_publishers_[vehicle];
     if (!publisher) {
       const int vehicles = static_cast<int>(state_.position_m.size());
-      publisher = Latched<train_brake_msgs::WagonState>(node_, VehicleName(vehicle, vehicles) + "/state");
+      publisher = Latched<train_brake_msgs::WagonState>(
+          node_, train_dynamics::VehicleName(vehicle, vehicles) + "/state");
     }
     publisher.publish(state);
   }

@@ -11,10 +11,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "ltd_master/interrupt.h"
-#include "ltd_master/run_command.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_run/exit_code.h"
+#include "train_run/interrupt.h"
 
 namespace ltd_master {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using train_dynamics::TrainMaster;
 using train_dynamics::TrainRecord;
 
-bool Ending() { return Interrupt() != 0 || !ros::ok(); }
+bool Ending() { return train_run::Interrupt() != 0 || !ros::ok(); }
 
 std::vector<std::string> Words(const std::string& text) {
   std::istringstream stream(text);
@@ -77,8 +77,9 @@ MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
   options.output.folder = parameters.param<std::string>("out", "");
   options.output.record_bag = parameters.param("record", true);
   options.output.checkpoint_interval_s = NonNegative(parameters, "checkpoint_interval_s", 10.0);
-  options.output.on_write_error =
-      OneOf(parameters, "on_write_error", "stop", "go_on") ? OnWriteError::kStop : OnWriteError::kGoOn;
+  options.output.on_write_error = OneOf(parameters, "on_write_error", "stop", "go_on")
+                                      ? train_results::OnWriteError::kStop
+                                      : train_results::OnWriteError::kGoOn;
   options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
   options.real_time_factor = NonNegative(parameters, "real_time_factor", 0.0);
   options.start_paused = parameters.param("start_paused", false);
@@ -96,7 +97,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
     : options_(options),
       resumed_(options.resume.empty()
                    ? std::nullopt
-                   : std::make_optional(LoadResumedRun(options.resume, options.overrides))),
+                   : std::make_optional(train_results::LoadResumedRun(options.resume, options.overrides))),
       scenario_(resumed_ ? resumed_->scenario
                          : train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
       control_(options.start_paused, options.real_time_factor),
@@ -118,8 +119,8 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   forces_publisher_ = node.advertise<train_brake_msgs::InTrainForces>("in_train_forces", kQueue);
   pressures_publisher_ = node.advertise<train_brake_msgs::BrakePressures>("brake_pressures", kQueue);
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
-  scenario_publisher_ = node.advertise<std_msgs::String>(kScenarioTopic, 1, true);
-  scenario_publisher_.publish(ScenarioMessage(scenario_.params));
+  scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
+  scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
   clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
@@ -155,39 +156,40 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
 
 int MasterNode::Run() {
   const train_dynamics::ScenarioParams& scenario = scenario_.params;
-  const std::unique_ptr<RunOutput> output =
-      resumed_ ? std::make_unique<RunOutput>(options_.output, *resumed_)
-               : std::make_unique<RunOutput>(options_.output, scenario_.files, scenario);
+  const std::unique_ptr<train_results::RunOutput> output =
+      resumed_ ? std::make_unique<train_results::RunOutput>(options_.output, *resumed_)
+               : std::make_unique<train_results::RunOutput>(options_.output, scenario_.files, scenario);
   const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
   TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
   train_dynamics::RunSummary summary(scenario);
-  std::unique_ptr<Progress> progress;
+  std::unique_ptr<train_run::Progress> progress;
   master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
   master.AddObserver([&](const TrainRecord& record) { output->Record(record); });
   master.AddObserver([&](const TrainRecord& record) { Publish(record); });
   master.AddObserver([&](const TrainRecord& record) {
     if (progress == nullptr)
-      progress = std::make_unique<Progress>(scenario.duration_s, master.start_s());  // the start-up is over
+      progress = std::make_unique<train_run::Progress>(scenario.duration_s,
+                                                       master.start_s());  // the start-up is over
     progress->Show(record.time_s, record.mean_speed_mps);
   });
 
   ros::AsyncSpinner spinner(2);  // a step may wait while another service is called
   spinner.start();
   std::string fault;
-  int exit_code = kSuccess;
+  int exit_code = train_run::kSuccess;
   try {
     Loop(master, *output, summary);
-    if (!master.Done()) exit_code = kInterrupted;
+    if (!master.Done()) exit_code = train_run::kInterrupted;
   } catch (const train_dynamics::SimulationFault& e) {
     fault = e.what();
-    exit_code = kSimulationFault;
+    exit_code = train_run::kSimulationFault;
   } catch (const WaitInterrupted&) {
-    exit_code = kInterrupted;
+    exit_code = train_run::kInterrupted;
   } catch (const RankFailure& e) {
-    exit_code = Ending() ? kInterrupted : kRankFailure;
+    exit_code = Ending() ? train_run::kInterrupted : train_run::kRankFailure;
     fault = e.what();
   } catch (const std::exception& e) {  // of the recorder
-    exit_code = kFailure;
+    exit_code = train_run::kFailure;
     fault = std::string("the results could not be written: ") + e.what();
   }
   control_.End();
@@ -198,18 +200,18 @@ int MasterNode::Run() {
 
   if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
-  const std::string json = summary.Json(master, wall_s, exit_code == kInterrupted ? "" : fault);
+  const std::string json = summary.Json(master, wall_s, exit_code == train_run::kInterrupted ? "" : fault);
   try {
     output->Finish(master, json);
   } catch (const std::exception& e) {
-    exit_code = kFailure;
+    exit_code = train_run::kFailure;
     fault = std::string("the results could not be written: ") + e.what();
   }
-  PublishDiagnostics(master, exit_code == kSuccess ? "complete" : "ended early");
+  PublishDiagnostics(master, exit_code == train_run::kSuccess ? "complete" : "ended early");
   ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
   fmt::print("{}", json);
   std::fflush(stdout);
-  if (exit_code == kInterrupted) {
+  if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
   } else if (!fault.empty()) {
     ROS_FATAL("the run broke down: %s", fault.c_str());
@@ -217,7 +219,8 @@ int MasterNode::Run() {
   return exit_code;
 }
 
-void MasterNode::Loop(TrainMaster& master, RunOutput& output, train_dynamics::RunSummary& summary) {
+void MasterNode::Loop(TrainMaster& master, train_results::RunOutput& output,
+                      train_dynamics::RunSummary& summary) {
   if (resumed_) {
     summary.SetMemory(resumed_->checkpoint.summary);
     initial_energy_j_ = summary.initial_energy_j();
@@ -255,7 +258,7 @@ void MasterNode::Loop(TrainMaster& master, RunOutput& output, train_dynamics::Ru
   if (!master.Done()) EndWithCheckpoint(master, output, summary);
 }
 
-void MasterNode::EndWithCheckpoint(TrainMaster& master, RunOutput& output,
+void MasterNode::EndWithCheckpoint(TrainMaster& master, train_results::RunOutput& output,
                                    const train_dynamics::RunSummary& summary) {
   constexpr std::chrono::seconds kPatience(2);
   finishing_until_ = Clock::now() + kPatience;
@@ -271,20 +274,20 @@ void MasterNode::EndWithCheckpoint(TrainMaster& master, RunOutput& output,
 void MasterNode::Publish(const TrainRecord& record) {
   PublishClock(record.time_s);
   if (state_publisher_.getNumSubscribers() > 0) {
-    Convert(record, state_);
+    train_results::Convert(record, state_);
     state_publisher_.publish(state_);
   }
   if (forces_publisher_.getNumSubscribers() > 0) {
-    Convert(record, forces_);
+    train_results::Convert(record, forces_);
     forces_publisher_.publish(forces_);
   }
   if (pressures_publisher_.getNumSubscribers() > 0) {
-    Convert(record, pressures_);
+    train_results::Convert(record, pressures_);
     pressures_publisher_.publish(pressures_);
   }
   if (record.ledger) {
     if (record.exchange == 0) initial_energy_j_ = record.ledger->Stored();
-    Convert(record, *record.ledger, initial_energy_j_, ledger_);
+    train_results::Convert(record, *record.ledger, initial_energy_j_, ledger_);
     ledger_publisher_.publish(ledger_);
   }
   live_.Show(record, PaceNow());

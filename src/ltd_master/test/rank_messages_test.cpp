@@ -1,4 +1,4 @@
-#include "ltd_master/rank_messages.h"
+#include "ltd_master/ranks/rank_messages.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "ltd_master/late_watch.h"
+#include "ltd_master/ranks/late_watch.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/snapshot.h"
 

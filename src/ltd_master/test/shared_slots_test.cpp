@@ -1,4 +1,4 @@
-#include "ltd_master/shared_slots.h"
+#include "ltd_master/ranks/shared_slots.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

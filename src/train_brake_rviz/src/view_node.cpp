@@ -8,9 +8,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "strict_config/reader.h"
 #include "train_brake_rviz/board/layout.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/reader.h"
 #include "train_dynamics/train/ranks.h"
 
 namespace train_brake_rviz {
@@ -81,9 +81,9 @@ ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own)
 }
 
 void ViewNode::OnScenario(const std_msgs::String& message) {
-  train_dynamics::config::ErrorList errors;
+  strict_config::ErrorList errors;
   const auto scenario =
-      train_dynamics::config::LoadText<train_dynamics::ScenarioParams>(message.data, "scenario", errors);
+      strict_config::LoadText<train_dynamics::ScenarioParams>(message.data, "scenario", errors);
   if (!errors.empty()) {
     ROS_ERROR("the scenario on %s cannot be used:\n%s", train_.resolveName("scenario").c_str(),
               errors.Text().c_str());

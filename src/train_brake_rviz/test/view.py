@@ -32,7 +32,7 @@ class View(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.out = pathlib.Path(cls.folder.name) / "out"
-        subprocess.run(["rosrun", "ltd_master", "train_sim", "run", str(SHORT_TRAIN), "--set", f"duration_s={DURATION}",
+        subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(SHORT_TRAIN), "--set", f"duration_s={DURATION}",
                         "--out", str(cls.out)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     @classmethod

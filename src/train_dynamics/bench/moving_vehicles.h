@@ -48,7 +48,7 @@ class MovingVehicles {
   ReplyPlaces reply() { return PlacesOf(reply_, 0); }
 
   Vehicle vehicle;
-  TrackParams track;
+  Track track;
   std::vector<State> states;
 
  private:

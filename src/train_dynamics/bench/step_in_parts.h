@@ -8,7 +8,7 @@ namespace train_dynamics::bench {
 template <class T>
 class StepInParts {
  public:
-  StepInParts(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+  StepInParts(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
               const WagonState<T>& state)
       : wagon_(&wagon), track_(&track), loads_(loads), dt_(dt), s_(state), v0_(state.velocity), v1_(v0_) {
     Drift(v0_, 0.5 * dt, s_.position);
@@ -75,7 +75,7 @@ class StepInParts {
   static constexpr WagonOutput<T>* kNoOutput = nullptr;
 
   const Wagon* wagon_;
-  const TrackParams* track_;
+  const Track* track_;
   VehicleLoads<T> loads_;
   double dt_;
   WagonState<T> s_;  ///< positions of the middle of the step, velocities of its start

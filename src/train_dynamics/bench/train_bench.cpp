@@ -94,11 +94,11 @@ void Couplers(benchmark::State& state) {
 }
 
 void AirBrakePressure(benchmark::State& state) {
-  const config::LoadedScenario scenario = Emergency({});
+  config::LoadedScenario scenario = Emergency({});
   std::vector<double> pressure_pa;
   double time_s = 0.0;
   for (auto _ : state) {
-    scenario.pressures(time_s, pressure_pa);
+    scenario.pressures.PressuresAt(time_s, pressure_pa);
     benchmark::DoNotOptimize(pressure_pa.data());
     time_s = time_s < 70.0 ? time_s + kTimeStep : 0.0;
   }

@@ -61,12 +61,13 @@ void Resume(const TrainCheckpoint& checkpoint) {
 
 void Read(const Bytes& bytes) {
   try {
-    fuzz::Require(Encode(DecodeBlockSnapshot(bytes)) == bytes, "what was decoded encodes to the same");
+    train_brake_build::fuzz::Require(Encode(DecodeBlockSnapshot(bytes)) == bytes,
+                                     "what was decoded encodes to the same");
   } catch (const SnapshotError&) {
   }
   try {
     const TrainCheckpoint checkpoint = DecodeTrainCheckpoint(bytes);
-    fuzz::Require(Encode(checkpoint) == bytes, "what was decoded encodes to the same");
+    train_brake_build::fuzz::Require(Encode(checkpoint) == bytes, "what was decoded encodes to the same");
     Resume(checkpoint);
   } catch (const SnapshotError&) {
   } catch (const SimulationFault&) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fuzz.h"
-#include "train_dynamics/config/error_list.h"
+#include "strict_config/error_list.h"
 #include "train_dynamics/config/load_scenario.h"
 
 namespace {
@@ -27,7 +27,7 @@ std::vector<std::string> Split(const std::string& text, char separator) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const train_dynamics::fuzz::Scratch folder;
+  static const train_brake_build::fuzz::Scratch folder;
   setenv("TRAIN_BRAKE_CONFIG", TRAIN_BRAKE_CONFIG_DIR, 1);
   std::vector<std::string> sections = Split({reinterpret_cast<const char*>(data), size}, '\x1e');
   sections.resize(4);
@@ -38,8 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   folder.Put("scenarios/t.csv", sections[3]);
   try {
     train_dynamics::config::LoadScenario(file, Split(sections[0], '\n'));
-  } catch (const train_dynamics::config::Error& error) {
-    train_dynamics::fuzz::Require(*error.what() != '\0', "whoever complains has something to say");
+  } catch (const strict_config::Error& error) {
+    train_brake_build::fuzz::Require(*error.what() != '\0', "whoever complains has something to say");
   }
   return 0;
 }

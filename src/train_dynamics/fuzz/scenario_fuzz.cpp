@@ -6,16 +6,16 @@
 #include <string>
 
 #include "fuzz.h"
-#include "train_dynamics/config/reader.h"
-#include "train_dynamics/config/writer.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/train_master.h"
 
 namespace train_dynamics {
 namespace {
 
-ScenarioParams Read(const std::string& text, config::ErrorList& errors) {
-  return config::LoadText<ScenarioParams>(text, "scenario", errors);
+ScenarioParams Read(const std::string& text, strict_config::ErrorList& errors) {
+  return strict_config::LoadText<ScenarioParams>(text, "scenario", errors);
 }
 
 /// A few exchanges of a train that is not too large for a fuzzer.
@@ -25,7 +25,7 @@ void Move(const ScenarioParams& scenario) {
     return;
   try {
     InProcessTransport vehicles(scenario, consist, 1);
-    TrainMaster master(scenario, consist, vehicles, AirBrakePressures(scenario, consist));
+    TrainMaster master(scenario, consist, vehicles, MakeBrakeSystem(scenario, consist));
     master.Start();
     for (int exchange = 0; exchange < 3 && !master.Done(); ++exchange) master.Exchange();
   } catch (const std::exception&) {  // parameters of which no vehicle or brake can be made, or a fault
@@ -37,14 +37,16 @@ void Move(const ScenarioParams& scenario) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace train_dynamics;
-  config::ErrorList errors;
+  strict_config::ErrorList errors;
   const ScenarioParams scenario = Read({reinterpret_cast<const char*>(data), size}, errors);
-  fuzz::Require(errors.empty() == errors.Text().empty(), "whoever complains has something to say");
+  train_brake_build::fuzz::Require(errors.empty() == errors.Text().empty(),
+                                   "whoever complains has something to say");
   if (!errors.empty()) return 0;
 
-  const std::string written = config::Write(scenario);
+  const std::string written = strict_config::Write(scenario);
   const ScenarioParams again = Read(written, errors);
-  fuzz::Require(errors.empty() && config::Write(again) == written, "what is written reads back the same");
+  train_brake_build::fuzz::Require(errors.empty() && strict_config::Write(again) == written,
+                                   "what is written reads back the same");
   Move(scenario);
   return 0;
 }

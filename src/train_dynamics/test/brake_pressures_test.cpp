@@ -1,4 +1,4 @@
-#include "train_dynamics/train/brake_pressures.h"
+#include "train_dynamics/brake/brake_pressures.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "paper_vehicle.h"
+#include "train_dynamics/brake/brake_system.h"
 
 namespace train_dynamics {
 namespace {
@@ -18,7 +19,7 @@ constexpr int kWindow = 20;     // steps, a record interval
 AirBrake Brake() {
   std::vector<double> centres;
   for (int i = 0; i < kVehicles; ++i) centres.push_back(-10.5 * i);
-  AirBrakeParams params = LoadPart<AirBrakeParams>("brakes/calibrated.yaml");
+  AirBrakeParams params = LoadPart<BrakeSystemParams>("brakes/calibrated.yaml").empirical;
   params.sources = {{"lead", 1, 0.0, true, 0.0}};
   return AirBrake(params,
                   {{0.5, BrakeCommandKind::kApply, 70.0},
@@ -34,7 +35,7 @@ TEST(BrakePressures, AreTheLawsUpToRounding) {
   double largest_pa = 0.0;
   for (long h = 0; h < 24000; ++h) {  // 12 s
     const double time_s = static_cast<double>(h) * kStep;
-    pressures.At(time_s, stepped);
+    pressures.PressuresAt(time_s, stepped);
     brake.PressuresAt(time_s, law);
     ASSERT_EQ(stepped.size(), law.size());
     for (int i = 0; i < kVehicles; ++i) {
@@ -53,12 +54,12 @@ TEST(BrakePressures, DependOnTheTimeAloneNotOnWhatWasAskedBefore) {
   std::vector<std::vector<double>> expected;
   for (long h = 0; h < 24000; ++h) {
     expected.emplace_back();
-    in_order.At(static_cast<double>(h) * kStep, expected.back());
+    in_order.PressuresAt(static_cast<double>(h) * kStep, expected.back());
   }
   std::vector<double> pressure;
   long h = 7;
   for (int i = 0; i < 24000; ++i) {
-    at_random.At(static_cast<double>(h) * kStep, pressure);
+    at_random.PressuresAt(static_cast<double>(h) * kStep, pressure);
     ASSERT_EQ(pressure, expected[h]) << "h = " << h;
     h = i % 3 == 0 ? (h * 7919 + 13) % 24000 : std::min(h + i % 3, 23999L);  // jumps, and a step or two ahead
   }

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/brake/shoe_friction.h"
 #include "train_dynamics/numeric/monotone_cubic.h"
@@ -19,7 +23,7 @@ constexpr double kPitch = 10.5;  // [m] between vehicles
 constexpr int kVehicles = 242;
 
 const AirBrakeParams& PaperBrake() {
-  static const AirBrakeParams brake = LoadPart<AirBrakeParams>("brakes/calibrated.yaml");
+  static const AirBrakeParams brake = LoadPart<BrakeSystemParams>("brakes/calibrated.yaml").empirical;
   return brake;
 }
 
@@ -172,11 +176,173 @@ TEST(AirBrake, PressureStaysBetweenWhereItWasAndItsGoal) {
   }
 }
 
-TEST(AirBrake, ASmallerReductionDoesNotRelease) {
-  const AirBrake brake = Brake({Apply(0.0, 170.0), Apply(60.0, 50.0)});  // goal 118 kPa, met at about 395 kPa
-  const double met = PressureOf(brake, 0, 60.0);
-  EXPECT_GT(met, 118e3);
-  EXPECT_EQ(PressureOf(brake, 0, 200.0), met);
+// ---- what a command means beside others
+
+// Pressures of some vehicles over 300 s.
+std::vector<double> History(const std::vector<BrakeCommand>& commands, bool graduated = false) {
+  AirBrakeParams params = PaperBrake();
+  params.graduated_release = graduated;
+  const AirBrake brake(params, commands, PaperTrain());
+  std::vector<double> history;
+  for (double t = 0.0; t < 300.0; t += 1.7) {
+    for (const int i : {0, 33, 121, 200, 241}) history.push_back(PressureOf(brake, i, t));
+  }
+  return history;
+}
+
+TEST(AirBrake, NothingButItsReleaseAfterTheBlockingTimeEndsAnEmergency) {
+  const std::vector<double> emergency = History({Emergency(2.0)});
+  EXPECT_EQ(History({Emergency(2.0), Apply(2.5, 50.0)}), emergency);
+  EXPECT_EQ(History({Emergency(2.0), Apply(70.0, 170.0), Apply(100.0, 60.0)}), emergency);
+  EXPECT_EQ(History({Emergency(2.0), Release(61.999)}), emergency);  // within 60 s
+  EXPECT_EQ(History({Emergency(2.0), Emergency(30.0)}), emergency);
+  EXPECT_NE(History({Emergency(2.0), Release(62.0)}), emergency);
+  // The second emergency does not begin the time anew; a release within it is not kept for later.
+  EXPECT_EQ(History({Emergency(2.0), Emergency(30.0), Release(40.0), Release(62.0)}),
+            History({Emergency(2.0), Release(62.0)}));
+  // Once released the brake obeys again.
+  const std::vector<BrakeCommand> again = {Emergency(2.0), Apply(20.0, 90.0), Release(80.0),
+                                           Apply(120.0, 60.0)};
+  EXPECT_EQ(History(again), History({Emergency(2.0), Release(80.0), Apply(120.0, 60.0)}));
+  EXPECT_NEAR(PressureOf(Brake(again), 0, 1000.0),
+              1e3 * MonotoneCubic(PaperBrake().service.reduction_kpa,
+                                  PaperBrake().service.cylinder_pressure_kpa, 60.0),
+              1.0);  // exp(-0.06 * 880)
+}
+
+TEST(AirBrake, OfCommandsAtOneTimeTheStrongestHoldsInAnyOrder) {
+  std::vector<BrakeCommand> commands = {Apply(5.0, 80.0), Release(5.0), Emergency(5.0), Apply(5.0, 120.0)};
+  const auto by_kind = [](const BrakeCommand& a, const BrakeCommand& b) {
+    return std::make_pair(a.kind, a.reduction_kpa) < std::make_pair(b.kind, b.reduction_kpa);
+  };
+  std::sort(commands.begin(), commands.end(), by_kind);
+  const std::vector<double> emergency = History({Emergency(5.0)});
+  const std::vector<double> service = History({Apply(5.0, 120.0)});
+  do {
+    EXPECT_EQ(History(commands), emergency);
+    std::vector<BrakeCommand> without = commands;
+    without.erase(
+        std::remove_if(without.begin(), without.end(),
+                       [](const BrakeCommand& c) { return c.kind == BrakeCommandKind::kEmergency; }),
+        without.end());
+    EXPECT_EQ(History(without), service);
+  } while (std::next_permutation(commands.begin(), commands.end(), by_kind));
+}
+
+TEST(AirBrake, ASmallerReductionReleasesFullyWithoutGraduatedRelease) {
+  EXPECT_EQ(History({Apply(0.0, 170.0), Apply(60.0, 70.0)}), History({Apply(0.0, 170.0), Release(60.0)}));
+  // It is the reduction now: less is a rise again, more is an application.
+  EXPECT_EQ(History({Apply(0.0, 170.0), Apply(60.0, 70.0), Apply(90.0, 70.0)}),
+            History({Apply(0.0, 170.0), Release(60.0)}));
+  EXPECT_EQ(History({Apply(0.0, 170.0), Apply(60.0, 70.0), Apply(90.0, 100.0)}),
+            History({Apply(0.0, 170.0), Release(60.0), Apply(90.0, 100.0)}));
+  EXPECT_EQ(History({Apply(0.0, 100.0), Apply(60.0, 100.0)}), History({Apply(0.0, 100.0)}));
+}
+
+TEST(AirBrake, ASmallerReductionGoesDownToItsPressureWithGraduatedRelease) {
+  AirBrakeParams params = PaperBrake();
+  params.graduated_release = true;
+  const AirBrake brake(params, {Apply(0.0, 170.0), Apply(100.0, 70.0)}, PaperTrain());
+  for (const int i : {0, 60, 121, 180, 241}) {
+    const double applied = FirstWave(i, kApplying, 180.0).after_s;
+    const double lowered = 100.0 + FirstWave(i, kReleasing, 180.0).after_s;
+    const double met = 430e3 * (1.0 - std::exp(-0.041933 * (lowered - applied)));
+    for (const double after : {0.0, 5.0, 40.0}) {
+      EXPECT_NEAR(PressureOf(brake, i, lowered + after), 172e3 + (met - 172e3) * std::exp(-0.08 * after),
+                  kRounding * 430e3);
+    }
+  }
+  // Before the pressure has risen so far it goes on rising, to the smaller pressure.
+  const AirBrake early(params, {Apply(0.0, 170.0), Apply(3.0, 70.0)}, PaperTrain());
+  double before = 0.0;
+  for (double t = 0.0; t < 300.0; t += 0.5) {
+    const double p = PressureOf(early, 0, t);
+    EXPECT_GE(p, before);
+    EXPECT_LE(p, 172e3 + 1e-9);
+    before = p;
+  }
+  EXPECT_NEAR(before, 172e3, 172e3 * 1e-6);  // exp(-0.057 * 297)
+}
+
+TEST(AirBrake, TellsOfCommandsWithoutEffectAndOfReservoirs) {
+  const auto of = [](const std::vector<BrakeCommand>& commands) {
+    std::string text;
+    for (const Warning& warning : PaperBrake().Warnings(commands))
+      text += warning.key + ": " + warning.text + "\n";
+    return text;
+  };
+  EXPECT_EQ(of({Apply(2.0, 50.0), Apply(9.0, 100.0), Emergency(20.0), Release(90.0)}), "");
+  EXPECT_EQ(of({Emergency(2.0), Apply(3.0, 50.0)}),
+            "commands[1].time_s: commands[1] has no effect: the emergency of commands[0] holds until a "
+            "release at 62 s "
+            "or later (brake.emergency.blocking_time_s)\n");
+  EXPECT_EQ(
+      of({Apply(2.0, 50.0), Emergency(2.0)}),
+      "commands[0].time_s: commands[0] has no effect: commands[1] at the same time is at least as strong\n");
+  const std::string again = "applies the brake again after a release: the empirical brake has no reservoirs";
+  EXPECT_NE(of({Apply(2.0, 100.0), Release(9.0), Apply(20.0, 60.0)}).find("commands[2] " + again),
+            std::string::npos);
+  EXPECT_NE(of({Apply(2.0, 100.0), Apply(9.0, 60.0), Apply(20.0, 80.0)}).find("commands[2] " + again),
+            std::string::npos);
+  EXPECT_NE(of({Apply(2.0, 100.0), Release(9.0), Apply(20.0, 60.0), Release(29.0), Apply(40.0, 60.0)})
+                .find("commands[2] (and 1 more after it) " + again),
+            std::string::npos);
+  EXPECT_EQ(of({Release(2.0), Apply(20.0, 60.0)}), "");  // nothing had been used
+}
+
+TEST(EmergencyRiseRate, IsPositiveAndOnceDifferentiableAtAnyDistance) {
+  const EmergencyApplicationParams& p = PaperBrake().emergency;
+  EXPECT_EQ(EmergencyRiseRate(p, 0.0), 0.238);
+  EXPECT_NEAR(EmergencyRiseRate(p, 2530.5), 0.0697, 1e-15);
+  const double k = 0.1683 / 2530.5, b1 = 0.0697;
+  for (const double beyond : {1.0, 1000.0, 1e5, 1e9}) {
+    EXPECT_NEAR(EmergencyRiseRate(p, 2530.5 + beyond), b1 / (1.0 + k * beyond / b1), 1e-15);
+    EXPECT_GT(EmergencyRiseRate(p, 2530.5 + beyond), 0.0);
+  }
+  const double h = 1e-3;
+  const double left = (EmergencyRiseRate(p, 2530.5) - EmergencyRiseRate(p, 2530.5 - h)) / h;
+  const double right = (EmergencyRiseRate(p, 2530.5 + h) - EmergencyRiseRate(p, 2530.5)) / h;
+  EXPECT_NEAR(left, right, 1e-3 * k);
+  // A train of 20 km with one source brakes to its end.
+  AirBrakeParams lead_only = PaperBrake();
+  lead_only.sources = {{"lead", 1}};
+  std::vector<double> centres;
+  for (int i = 0; i < 1000; ++i) centres.push_back(-20.0 * i);
+  const AirBrake brake(lead_only, {Emergency(0.0)}, centres);
+  const double beta = b1 / (1.0 + k * (19980.0 - 2530.5) / b1);
+  EXPECT_NEAR(PressureOf(brake, 999, 300.0), 430e3 * (1.0 - std::exp(-beta * (300.0 - 19980.0 / 250.0))),
+              kRounding * 430e3);
+}
+
+// ---- a pipe that opens
+
+TEST(AirBrake, AnOpenPipeIsAnEmergencyFromBothSidesThatNothingEnds) {
+  AirBrake brake = Brake({Apply(2.0, 50.0), Release(30.0), Apply(200.0, 50.0), Release(400.0)});
+  const AirBrake before = brake;
+  constexpr int kConnection = 60;  // between vehicles 61 and 62
+  brake.OpenPipe(20.0, kConnection);
+  for (int i = 0; i < kVehicles; i += 5) {
+    const double distance = kPitch * (i <= kConnection ? kConnection - i : i - kConnection - 1);
+    const double arrival = 20.0 + distance / 250.0;
+    EXPECT_EQ(PressureOf(brake, i, arrival - 1e-9), PressureOf(before, i, arrival - 1e-9)) << i;
+    const double met = PressureOf(before, i, arrival);
+    const double beta = 0.238 - 0.1683 * distance / 2530.5;
+    for (const double t : {arrival + 3.0, 100.0, 1000.0}) {
+      EXPECT_NEAR(PressureOf(brake, i, t), met + (430e3 - met) * (1.0 - std::exp(-beta * (t - arrival))),
+                  kRounding * 430e3)
+          << i;
+    }
+  }
+}
+
+TEST(AirBrake, AnEmergencyInForceGoesOnThroughAnOpenPipe) {
+  AirBrake brake = Brake({Emergency(2.0), Release(80.0)});
+  brake.OpenPipe(30.0, 100);
+  const AirBrake emergency = Brake({Emergency(2.0)});
+  for (int i = 0; i < kVehicles; i += 7) {
+    for (const double t : {20.0, 45.0, 150.0})
+      EXPECT_EQ(PressureOf(brake, i, t), PressureOf(emergency, i, t));
+  }
 }
 
 TEST(AirBrake, MeasuredReductionsAreReproduced) {
@@ -231,15 +397,15 @@ TEST(AirBrake, WrongInputIsRefused) {
                std::invalid_argument);                             // source at vehicle 122 of 10
   EXPECT_THROW(Brake({Apply(0.0, 49.9)}), std::invalid_argument);  // outside the measured range
   EXPECT_THROW(Brake({Apply(0.0, 170.1)}), std::invalid_argument);
-  EXPECT_THROW(Brake({Emergency(5.0), Release(4.0)}), std::invalid_argument);  // back in time
+  EXPECT_THROW(Brake({Apply(5.0, 60.0), Release(4.0)}), std::invalid_argument);  // back in time
   AirBrakeParams slow = PaperBrake();
-  slow.emergency.rise_rate_fall_length_m = 500.0;
-  slow.emergency.rise_rate_fall_per_s =
-      0.2;  // nothing is left at 595 m; vehicles stand up to 770 m from a source
-  EXPECT_THROW(AirBrake(slow, {Emergency(0.0)}, PaperTrain()), std::invalid_argument);
+  slow.emergency.rise_rate_fall_per_s = slow.emergency.rise_rate_per_s;  // nothing would be left
+  EXPECT_THROW(strict_config::Validate(slow), std::invalid_argument);
   AirBrakeParams no_charger = PaperBrake();
   for (BrakeSourceParams& source : no_charger.sources) source.releases = false;
-  EXPECT_THROW(AirBrake(no_charger, {Emergency(0.0), Release(9.0)}, PaperTrain()), std::invalid_argument);
+  EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Release(9.0)}, PaperTrain()), std::invalid_argument);
+  EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Apply(9.0, 60.0)}, PaperTrain()),
+               std::invalid_argument);
 }
 
 TEST(PressureTable, IsLinearBetweenRowsAndHoldsItsEnds) {

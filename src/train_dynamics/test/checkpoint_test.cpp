@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "simulate.h"
-#include "train_dynamics/config/writer.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/train/run_summary.h"
 #include "train_dynamics/train/snapshot.h"
 
@@ -90,21 +90,35 @@ TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, CheckpointTest,
-    testing::Values(Case{"Wagons", "emergency", {"model=2d", "duration_s=6"}},
-                    Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
-                    Case{"NewmarkWithoutInertia",
-                         "full_service",
-                         {"model=ltd-no-inertia", "integrator=newmark", "duration_s=20"}},
-                    Case{"StickSpringsRemember",
-                         "emergency",
-                         {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
-                    // All three models in one train.
-                    Case{"Mixed",
-                         "emergency",
-                         {"duration_s=6", "train.consist[0].model=ltd",
-                          "train.consist[1].model=ltd-no-inertia"}},
-                    // After the wagon has come to rest: the summary remembers when it stopped.
-                    Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
+    testing::Values(
+        Case{"Wagons", "emergency", {"model=2d", "duration_s=6"}},
+        Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
+        Case{"NewmarkWithoutInertia",
+             "full_service",
+             {"model=ltd-no-inertia", "integrator=newmark", "duration_s=20"}},
+        Case{"StickSpringsRemember",
+             "emergency",
+             {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
+        // All three models in one train.
+        Case{"Mixed",
+             "emergency",
+             {"duration_s=6", "train.consist[0].model=ltd", "train.consist[1].model=ltd-no-inertia"}},
+        Case{"DampedGearsRemember",
+             "emergency",
+             {"model=ltd", "duration_s=20", "train.connection=friction_gear"}},
+        Case{"DifferentGearsRemember",
+             "emergency",
+             {"model=ltd", "duration_s=10", "train.connection=mt2_and_polymer"}},
+        Case{"BuffersRemember",
+             "emergency",
+             {"model=ltd", "duration_s=10", "train.connection=side_buffers_b"}},
+        // Broken connections, and the emergency that their open pipes are.
+        Case{"PartedTrains",
+             "full_service",
+             {"model=ltd", "duration_s=60", "train.connection={base: friction_gear, strength_n: 8.0e4}"},
+             0.9},
+        // After the wagon has come to rest: the summary remembers when it stopped.
+        Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
     [](const auto& c) { return std::string(c.param.name); });
 
 // ---- what does not fit is refused -------------------------------------------------------------------------------

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/scenario.h"
-#include "train_dynamics/validate.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 
 namespace train_dynamics {
@@ -43,7 +43,7 @@ TEST(Consist, LengthsAndUnits) {
   train.connection = Gears();
   VehicleParams locomotive = OreWagon();
   locomotive.length_m = 20.5;
-  train.consist = {{locomotive, 1, 1, {}}, {OreWagon(), 6, 3, Bar()}};
+  train.consist = {{locomotive, 1, true, 1, {}}, {OreWagon(), 6, false, 3, Bar()}};
   const Consist consist(train);
   EXPECT_EQ(consist.centre_m, (std::vector<double>{0.0, -15.5, -26.0, -36.5, -47.0, -57.5, -68.0}));
   std::vector<bool> bars;
@@ -52,9 +52,9 @@ TEST(Consist, LengthsAndUnits) {
   EXPECT_EQ(consist.vehicle(0).length_m, 20.5);
   EXPECT_EQ(consist.vehicle(6).length_m, 10.5);
   train.consist[1].count = 7;
-  EXPECT_THROW(Validate(train), std::invalid_argument);  // not whole units
+  EXPECT_THROW(strict_config::Validate(train), std::invalid_argument);  // not whole units
   train.consist.clear();
-  EXPECT_THROW(Validate(train), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(train), std::invalid_argument);
 }
 
 TEST(VehicleIndex, CountsFromBothEnds) {
@@ -72,7 +72,7 @@ TEST(VehicleIndex, CountsFromBothEnds) {
 Consist Pairs(int pairs, const ConnectionParams& between = Gears(), const ConnectionParams& within = Bar()) {
   TrainParams train;
   train.connection = between;
-  train.consist = {{OreWagon(), 2 * pairs, 2, within}};
+  train.consist = {{OreWagon(), 2 * pairs, false, 2, within}};
   return Consist(train);
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/coupler/connection.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -228,12 +228,12 @@ TEST(DraftGear, StickSpringWithConstantFrictionDoesNotKnowTheSpeed) {
 
 TEST(DraftGear, AWedgeThatLocksItselfIsRefused) {
   DraftGearParams p = PaperGear();
-  EXPECT_NO_THROW(Validate(p));
+  EXPECT_NO_THROW(strict_config::Validate(p));
   p.static_friction_coefficient = 0.41;  // tan 22 deg = 0.404
-  EXPECT_THROW(Validate(p), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(p), std::invalid_argument);
   p = PaperGear();
   p.kinetic_friction_coefficient = 0.34;  // above the static one
-  EXPECT_THROW(Validate(p), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(p), std::invalid_argument);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "train_dynamics/config/reader.h"
+#include "strict_config/reader.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 
 namespace train_dynamics {
@@ -11,10 +11,10 @@ namespace train_dynamics {
 template <class Params>
 Params LoadPart(const std::string& file) {
   const std::string config = TRAIN_BRAKE_CONFIG_DIR;
-  config::LoadOptions options;
+  strict_config::LoadOptions options;
   options.search_roots = {config};
   options.kind = file.substr(0, file.find('/'));
-  return config::Load<Params>(config + "/" + file, options);
+  return strict_config::Load<Params>(config + "/" + file, options);
 }
 
 /// The paper's wagon.

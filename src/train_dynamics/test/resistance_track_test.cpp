@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "paper_vehicle.h"
+#include "strict_config/validate.h"
 #include "train_dynamics/numeric/trigonometry.h"
 #include "train_dynamics/resistance/propulsion.h"
 #include "train_dynamics/track/track.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -49,15 +49,15 @@ TEST(Grade, HoldsFromItsEntryToTheNext) {
   EXPECT_EQ(GradeAt(track, 100.0), 0.0);
   EXPECT_EQ(GradeAt(track, 250.0), 0.015);
   EXPECT_EQ(GradeAt(track, 1e9), 0.015);
-  EXPECT_EQ(GradeUnder(track, 180.0), 0.0);
+  EXPECT_EQ(GradeUnder<double>(track, 180.0), 0.0);
   track.grades = {{100.0, 2.0}};
-  EXPECT_EQ(GradeUnder(track, -5.0), 0.02);
+  EXPECT_EQ(GradeUnder<double>(track, -5.0), 0.02);
 }
 
 TEST(Grade, EntriesMustAscend) {
   TrackParams track;
   track.grades = {{0.0, 1.0}, {0.0, 2.0}};
-  EXPECT_THROW(Validate(track), std::invalid_argument);
+  EXPECT_THROW(strict_config::Validate(track), std::invalid_argument);
 }
 
 TEST(Dip, IsEq7) {
@@ -89,22 +89,27 @@ TEST(Dip, OverlappingDipsAddUp) {
   TrackParams track;
   track.dips = {{0.0, 0.05, 10.0}, {4.0, -0.02, 8.0}};
   for (const double x : {2.0, 5.0, 9.0, 11.0}) {
-    const RailHeight one = DipHeight(track.dips[0], x), other = DipHeight(track.dips[1], x);
+    const RailHeight<double> one = DipHeight(track.dips[0], x), other = DipHeight(track.dips[1], x);
     EXPECT_EQ(RailHeightAt(track, x).height, one.height + other.height);
-    EXPECT_EQ(RailUnder(track, x, 0.4).slope, one.slope + other.slope);
+    EXPECT_EQ(RailHeightUnder<double>(track, x).slope, one.slope + other.slope);
   }
 }
 
 TEST(FrictionPatch, ReplacesTheVehiclesOwn) {
+  AdhesionParams own;
+  own.friction_coefficient = 0.4;
+  const auto friction_at = [&own](const Track& track, double x) {
+    return track.SurfaceAt(x, own).friction_coefficient;
+  };
   TrackParams track;
-  EXPECT_EQ(FrictionAt(track, 5.0, 0.4), 0.4);
+  EXPECT_EQ(friction_at(track, 5.0), 0.4);
   track.friction_patches = {{0.0, 100.0, 0.05}, {50.0, 60.0, 0.3}};
-  EXPECT_EQ(FrictionAt(track, -0.001, 0.4), 0.4);
-  EXPECT_EQ(FrictionAt(track, 0.0, 0.4), 0.05);
-  EXPECT_EQ(FrictionAt(track, 55.0, 0.4), 0.3);  // the later entry holds
-  EXPECT_EQ(FrictionAt(track, 60.0, 0.4), 0.05);
-  EXPECT_EQ(FrictionAt(track, 100.0, 0.4), 0.4);
-  EXPECT_EQ(RailUnder(track, 55.0, 0.4).friction, 0.3);
+  EXPECT_EQ(friction_at(track, -0.001), 0.4);
+  EXPECT_EQ(friction_at(track, 0.0), 0.05);
+  EXPECT_EQ(friction_at(track, 55.0), 0.3);  // the later entry holds
+  EXPECT_EQ(friction_at(track, 60.0), 0.05);
+  EXPECT_EQ(friction_at(track, 100.0), 0.4);
+  EXPECT_EQ(RailSurfaceUnder<double>(track, 55.0, own).friction, 0.3);
 }
 
 // ---- trigonometry

@@ -71,15 +71,24 @@ TEST(Records, ComeAtTheirTimes) {
 // ---- faults
 // ---------------------------------------------------------------------------------------------------------
 
+// Vehicles in this process, of which the second gets a brake pressure that is NaN from 0.5 s on.
+class SpoiltTransport : public InProcessTransport {
+ public:
+  using InProcessTransport::InProcessTransport;
+  void Exchange(const ExchangeRequest& request, ExchangeReply& reply) override {
+    ExchangeRequest spoilt = request;
+    if (request.exchange >= 500) {
+      spoilt.cylinder_pressure_pa[1] = std::numeric_limits<double>::quiet_NaN();
+    }
+    InProcessTransport::Exchange(spoilt, reply);
+  }
+};
+
 // Runs a scenario whose brake pressures become NaN at vehicle 2 after 0.5 s; the fault's text.
 std::string FaultOf(const std::string& scenario, const std::vector<std::string>& overrides) {
   const config::LoadedScenario loaded = config::LoadScenario(ScenarioFile(scenario), overrides);
-  InProcessTransport transport(loaded.params, loaded.consist, 2);
-  TrainMaster master(loaded.params, loaded.consist, transport,
-                     [&](double time_s, std::vector<double>& pressure_pa) {
-                       loaded.pressures(time_s, pressure_pa);
-                       if (time_s > 0.5) pressure_pa[1] = std::numeric_limits<double>::quiet_NaN();
-                     });
+  SpoiltTransport transport(loaded.params, loaded.consist, 2);
+  TrainMaster master(loaded.params, loaded.consist, transport, loaded.pressures);
   try {
     master.Start();
     while (!master.Done()) master.Exchange();

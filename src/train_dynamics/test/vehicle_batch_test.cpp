@@ -224,7 +224,8 @@ TEST_P(LaneKernelsTest, ReportABatchWithAWagonThatIsNotSound) {
     WagonBatch batch(wagon, GetParam(), states);
     Arrays arrays;
     EXPECT_FALSE(batch.Advance({}, 1e-3, 1, arrays.Loads(), arrays.Reply(), false)) << "wagon " << broken;
-    for (int i = 0; i < kVehicles; ++i) EXPECT_EQ(i != broken, IsSound(batch.StateOf(i)));
+    for (int i = 0; i < kVehicles; ++i)
+      EXPECT_EQ(i != broken, IsSound(batch.vehicle(), Track(), batch.StateOf(i)));
   }
 }
 
@@ -274,75 +275,6 @@ TEST_P(LaneKernelsTest, DigestPositionsAndVelocitiesOfEachBody) {
   std::uint64_t of_ltd = 0;
   LtdBatch(LtdVehicle(OreWagon(), true), GetParam(), {state}).Digests(&of_ltd);
   EXPECT_EQ(of_ltd, digest.value());
-}
-
-// Sixteen connections from deep compression to deep tension, at rest, opening and closing.
-struct Connections {
-  static constexpr int kCount = 16;
-  std::vector<double> numbers[11];
-  Connections() {
-    for (std::vector<double>& array : numbers) array.assign(kCount, 0.0);
-    for (int i = 0; i < kCount; ++i) {
-      numbers[0][i] = 0.3 * std::sin(2.0 * i);
-      numbers[1][i] = 0.02 * (i - 8);
-    }
-  }
-  ConnectionArrays Arrays() {
-    std::vector<double>* const a = numbers;
-    return {a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(),
-            a[6].data(), a[7].data(), a[8].data(), a[9].data(), a[10].data()};
-  }
-};
-
-TEST_P(LaneKernelsTest, LoadConnectionsAsTheScalarLawDoes) {
-  ConnectionParams sticking = LoadPart<ConnectionParams>("couplers/calibrated.yaml");
-  sticking.draft_gear.friction = DraftGearFriction::kStickSpring;
-  for (const ConnectionParams& params : {LoadPart<ConnectionParams>("couplers/calibrated.yaml"),
-                                         LoadPart<ConnectionParams>("couplers/draw_bar.yaml"), sticking}) {
-    const Connection type(params);
-    Connections connections, expected;
-    std::vector<double> next_m(Connections::kCount);
-    for (int exchange = 0; exchange < 5; ++exchange) {
-      for (int i = 0; i < Connections::kCount; ++i) {
-        next_m[i] = expected.numbers[1][i] + 1e-3 * expected.numbers[0][i];
-      }
-      const auto exchange_of = [&](const LaneKernels& kernels, Connections& of) {
-        kernels.connection_forces(type, 5e-4, 0.001 * exchange, Connections::kCount, of.Arrays());
-        kernels.connection_work(Connections::kCount, next_m.data(), of.Arrays());
-      };
-      exchange_of(GetParam(), connections);
-      exchange_of(AllLaneKernels().back(), expected);
-      for (int array = 0; array < 11; ++array) {
-        EXPECT_EQ(connections.numbers[array], expected.numbers[array]) << params.name << " " << array;
-      }
-    }
-    EXPECT_NE(expected.numbers[10], std::vector<double>(Connections::kCount, 0.0)) << params.name;
-  }
-}
-
-TEST_P(LaneKernelsTest, FillCylindersAsTheScalarLawDoes) {
-  std::vector<double> centres;
-  for (int i = 0; i < 16; ++i) centres.push_back(-10.5 * i);
-  AirBrakeParams params = LoadPart<AirBrakeParams>("brakes/calibrated.yaml");
-  params.sources = {{"lead", 1}};
-  const AirBrake brake(params, {{0.0, BrakeCommandKind::kEmergency}, {9.0, BrakeCommandKind::kRelease}},
-                       centres);
-  const BrakePhases phases = brake.Phases();
-  for (const double time_s : {0.0, 0.3, 5.0, 9.5, 30.0}) {
-    std::vector<double> law(16), target(16), gap(16), decay(16), pressure(16);
-    GetParam().cylinder_pressures(phases, time_s, 16, law.data());
-    const GapArrays gaps = {target.data(), gap.data(), decay.data()};
-    GetParam().cylinder_gaps(phases, time_s, 0.01, 16, gaps);
-    GetParam().close_cylinder_gaps(3, 16, gaps, pressure.data());
-    for (int i = 0; i < 16; ++i) {
-      const CylinderGap<double> expected = CylinderGapAt<double>(phases, i, time_s);
-      EXPECT_EQ(law[i], CylinderPressure<double>(phases, i, time_s));
-      EXPECT_EQ(target[i], expected.target_pa);
-      EXPECT_EQ(decay[i], Exp(-expected.rate_per_s * 0.01));
-      EXPECT_EQ(gap[i], ((expected.gap_pa * decay[i]) * decay[i]) * decay[i]);
-      EXPECT_EQ(pressure[i], target[i] + gap[i]);
-    }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LaneKernelsTest, testing::ValuesIn(AllLaneKernels()),

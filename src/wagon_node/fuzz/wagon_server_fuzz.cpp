@@ -13,18 +13,18 @@
 #include <string>
 #include <vector>
 
-#include "../../train_dynamics/fuzz/fuzz.h"
+#include "fuzz.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/writer.h"
 #include "wagon_node/wagon_server.h"
 
 namespace {
 
+using train_brake_build::fuzz::Require;
 using train_brake_msgs::ConfigureRequest;
 using train_brake_msgs::ConfigureResponse;
 using train_brake_msgs::StepRequest;
 using train_brake_msgs::StepResponse;
-using train_dynamics::fuzz::Require;
 
 constexpr std::uint64_t kRun = 7234981734512349871;
 constexpr std::uint32_t kVehicles = 3;
@@ -63,7 +63,7 @@ const ConfigureRequest& RightConfigure() {
     right.run_id = kRun;
     right.first_vehicle = 1;
     right.vehicle_count = kVehicles;
-    right.scenario = train_dynamics::config::Write(scenario.params);
+    right.scenario = strict_config::Write(scenario.params);
     right.scenario_digest = train_dynamics::TextDigest(right.scenario);
     return right;
   }();

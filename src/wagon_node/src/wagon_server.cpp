@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "train_dynamics/config/reader.h"
+#include "strict_config/reader.h"
 #include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/train/threaded_block.h"
@@ -37,8 +37,8 @@ std::string Hex(std::uint64_t value) {
 }
 
 ScenarioParams Read(const std::string& scenario) {
-  train_dynamics::config::ErrorList errors;
-  ScenarioParams params = train_dynamics::config::LoadText<ScenarioParams>(scenario, "scenario", errors);
+  strict_config::ErrorList errors;
+  ScenarioParams params = strict_config::LoadText<ScenarioParams>(scenario, "scenario", errors);
   if (!errors.empty()) throw Refusal("the scenario cannot be used:\n" + errors.Text(5));
   return params;
 }

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "strict_config/writer.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/train/in_process_train.h"
 
 namespace wagon_node {
@@ -38,7 +38,7 @@ ConfigureRequest ConfigureFor(const LoadedScenario& scenario) {
   request.run_id = kRun;
   request.first_vehicle = kFirst + 1;
   request.vehicle_count = kCount;
-  request.scenario = train_dynamics::config::Write(scenario.params);
+  request.scenario = strict_config::Write(scenario.params);
   request.scenario_digest = train_dynamics::TextDigest(request.scenario);
   return request;
 }

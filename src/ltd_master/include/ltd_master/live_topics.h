@@ -7,7 +7,7 @@
 #include <chrono>
 #include <map>
 
-#include "ltd_master/conversions.h"
+#include "train_results/conversions.h"
 
 namespace ltd_master {
 

@@ -14,15 +14,15 @@
 #include <string>
 #include <vector>
 
-#include "ltd_master/conversions.h"
 #include "ltd_master/exchange_statistics.h"
 #include "ltd_master/live_topics.h"
-#include "ltd_master/progress.h"
-#include "ltd_master/ros_transport.h"
+#include "ltd_master/ranks/ros_transport.h"
 #include "ltd_master/run_control.h"
-#include "ltd_master/run_output.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/run_summary.h"
+#include "train_results/conversions.h"
+#include "train_results/run_output.h"
+#include "train_run/progress.h"
 
 namespace ltd_master {
 
@@ -32,7 +32,7 @@ struct MasterOptions {
   int vehicles = 0;  ///< that the launch file expects in the train; 0 = any number
   int ranks = 0;     ///< wagon nodes; 0 = the vehicles are in the master's own process
   std::vector<std::string> overrides;
-  OutputOptions output;
+  train_results::OutputOptions output;
   std::string resume;  ///< folder of a run that goes on from its checkpoint
   double real_time_factor = 0.0;
   bool start_paused = false;
@@ -61,9 +61,10 @@ class MasterNode {
 
  private:
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
-  void Loop(train_dynamics::TrainMaster& master, RunOutput& output, train_dynamics::RunSummary& summary);
+  void Loop(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
+            train_dynamics::RunSummary& summary);
   /// Goes on to the next record, and leaves a checkpoint there, if that takes no time.
-  void EndWithCheckpoint(train_dynamics::TrainMaster& master, RunOutput& output,
+  void EndWithCheckpoint(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
                          const train_dynamics::RunSummary& summary);
   void Publish(const train_dynamics::TrainRecord& record);
   void PublishClock(double simulated_s);
@@ -80,7 +81,7 @@ class MasterNode {
 
   MasterOptions options_;
   Clock::time_point finishing_until_;  ///< until then, an interruption does not end a wait
-  std::optional<ResumedRun> resumed_;
+  std::optional<train_results::ResumedRun> resumed_;
   train_dynamics::config::LoadedScenario scenario_;
   RunControl control_;
   RosTransport* ranks_ = nullptr;  ///< null: no wagon nodes

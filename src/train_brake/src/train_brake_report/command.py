@@ -151,7 +151,7 @@ def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.P
     return out
 
 
-def main(argv: List[str], train_sim: List[str] = ("rosrun", "ltd_master", "train_sim")) -> int:
+def main(argv: List[str], train_sim: List[str] = ("rosrun", "train_sim", "train_sim")) -> int:
     options = _arguments(argv)
     try:
         print(f"report: wrote {write_report(options, list(train_sim))}")

@@ -63,11 +63,6 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
       force_limit_kn_(kLeastForce),
       pressure_limit_kpa_(kLeastPressure) {
   for (int i = 0; i < vehicles(); ++i) masses_kg_.push_back(consist_.vehicle(i).TotalMass());
-  int first = 0;
-  for (const train_dynamics::ConsistGroupParams& group : scenario.train.consist) {
-    if (group.count == 1 && vehicles() > 1) locomotives_.push_back(first);
-    first += group.count;
-  }
   if (vertical_exaggeration_ <= 0.0) {
     // What comes into view of a train that does not gain speed.
     const double way = scenario.InitialSpeed() * scenario.duration_s;
@@ -241,7 +236,7 @@ void Board::DrawTrain(Drawing& drawing, const Snapshot& snapshot, const Selectio
                                                  consist_.vehicle(vehicles() - 1).length_m);
   strip.DrawTrack(drawing, abscissa);
   strip.DrawVehicles(drawing, abscissa, edges, Colors(snapshot, selection));
-  for (const int i : locomotives_) strip.DrawLocomotive(drawing, abscissa, edges[i], edges[i + 1]);
+  for (const int i : consist_.locomotives) strip.DrawLocomotive(drawing, abscissa, edges[i], edges[i + 1]);
   const auto followed = static_cast<size_t>(selection.vehicle);
   strip.DrawZoom(drawing, abscissa, edges[followed], edges[followed + 1], layout::kCloseUp);
 
@@ -273,7 +268,7 @@ void Board::DrawCloseUp(Drawing& drawing, const Snapshot& snapshot, const Select
   if (followed > 0 && !force.empty()) sight.front_force_n = force[followed - 1];
   if (followed + 1 < vehicles() && !force.empty()) sight.rear_force_n = force[followed];
   sight.color = Colors(snapshot, selection)[followed];
-  close_up.Draw(drawing, scenario_.track, sight);
+  close_up.Draw(drawing, elevation_.track(), sight);
 }
 
 void Board::DrawLegend(Drawing& drawing, const Selection& selection) const {

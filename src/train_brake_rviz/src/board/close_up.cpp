@@ -66,7 +66,7 @@ Point CloseUp::PlaceOf(const BodyVector<double>& position, int body, double offs
   return {0.5 * (area_.left + area_.right) - scale_ * forward, rail_ + scale_ * up};
 }
 
-void CloseUp::Draw(Drawing& drawing, const train_dynamics::TrackParams& track, const Sight& sight) const {
+void CloseUp::Draw(Drawing& drawing, const train_dynamics::Track& track, const Sight& sight) const {
   drawing.On(Layer::kBack);
   drawing.Box(area_, palette::kPaper);
   drawing.On(Layer::kLine);
@@ -95,7 +95,7 @@ void CloseUp::Draw(Drawing& drawing, const train_dynamics::TrackParams& track, c
   DrawContactForces(drawing, *sight.detail);
 }
 
-void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::TrackParams& track, double centre_m) const {
+void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::Track& track, double centre_m) const {
   constexpr int kPieces = 60;
   const double half_m = 0.62 * vehicle_.length_m;
   const auto rail_at = [&](int piece) {

@@ -7,21 +7,31 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "strict_config/csv_table.h"
+#include "strict_config/reader.h"
+#include "strict_config/writer.h"
 #include "train_dynamics/brake/pressure_table.h"
-#include "train_dynamics/config/csv_table.h"
-#include "train_dynamics/config/reader.h"
-#include "train_dynamics/config/writer.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
 
 namespace train_dynamics::config {
 namespace {
+
+using strict_config::CsvTable;
+using strict_config::Error;
+using strict_config::ErrorList;
+using strict_config::Load;
+using strict_config::LoadOptions;
+using strict_config::LoadText;
+using strict_config::ReadCsvTable;
+using strict_config::Reader;
+using strict_config::SearchRootsFromEnvironment;
+using strict_config::Write;
 
 LoadOptions OptionsFor(const std::vector<std::string>& overrides, const std::string& kind) {
   LoadOptions options;
@@ -36,7 +46,7 @@ void ThrowIfAny(const ErrorList& errors) {
   if (!errors.empty()) throw Error(errors);
 }
 
-PressureSource ReadPressureTable(const std::string& file, int vehicles) {
+BrakeSystem ReadPressureTable(const std::string& file, int vehicles) {
   ErrorList errors;
   const CsvTable table = ReadCsvTable(file, errors);
   ThrowIfAny(errors);
@@ -48,10 +58,7 @@ PressureSource ReadPressureTable(const std::string& file, int vehicles) {
   }
   ThrowIfAny(errors);
   try {
-    const auto source = std::make_shared<const PressureTable>(*time, std::move(pressures));
-    return [source](double time_s, std::vector<double>& pressure_pa) {
-      source->PressuresAt(time_s, pressure_pa);
-    };
+    return BrakeSystem(PressureTable(*time, std::move(pressures)));
   } catch (const std::invalid_argument& e) {
     errors.Add(file, 0, "", e.what());
     throw Error(errors);
@@ -128,7 +135,7 @@ std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& sc
 
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
   std::optional<Consist> consist;
-  PressureSource pressures;
+  std::optional<BrakeSystem> pressures;
   std::vector<std::filesystem::path> files;
   std::vector<std::string> warnings;
   std::vector<std::pair<std::string, double>> stable_steps;
@@ -144,7 +151,7 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
       return;
     }
     try {
-      pressures = AirBrakePressures(params, *consist);
+      pressures = MakeBrakeSystem(params, *consist);
     } catch (const std::invalid_argument& error) {
       rules.Check(false, "brake", std::string("does not suit the train: ") + error.what());
     }
@@ -156,7 +163,7 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
     pressures = ReadPressureTable(params.pressure_table, consist->vehicles());
     files.emplace_back(params.pressure_table);
   }
-  return {std::move(params),   std::move(*consist), std::move(pressures),
+  return {std::move(params),   std::move(*consist), std::move(*pressures),
           std::move(warnings), std::move(files),    std::move(stable_steps)};
 }
 
@@ -168,7 +175,7 @@ LoadedScenario LoadScenarioText(const std::string& text, const std::string& labe
   ThrowIfAny(errors);
   Consist consist(params.train);
   try {
-    PressureSource pressures = AirBrakePressures(params, consist);
+    BrakeSystem pressures = MakeBrakeSystem(params, consist);
     return {std::move(params), std::move(consist), std::move(pressures), {}};
   } catch (const std::invalid_argument& error) {
     errors.Add(label, 0, "brake", std::string("does not suit the train: ") + error.what());

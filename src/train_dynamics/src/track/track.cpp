@@ -1,25 +1,238 @@
 #include "train_dynamics/track/track.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
 
 #include "train_dynamics/numeric/trigonometry.h"
+#include "strict_config/validate.h"
 
 namespace train_dynamics {
+namespace {
 
-bool TrackParams::GradesAscend() const {
-  return std::adjacent_find(grades.begin(), grades.end(), [](const GradeParams& a, const GradeParams& b) {
-           return a.from_m >= b.from_m;
-         }) == grades.end();
+constexpr Stretch kNowhere{0.0, 0.0};
+constexpr std::size_t kMostDipOverlaps = 10000000;  // 40 MB
+
+std::string Index(std::size_t i) { return "[" + std::to_string(i) + "]"; }
+
+/// A value that holds from one position to another, among others of its kind.
+struct Span {
+  double from_m, to_m;
+};
+
+/// Calls `piece(from_m, covering)` for every stretch between neighbouring ends of spans, in ascending order, the last
+/// one empty; `covering` are the indices of the spans on it. Stops when it returns false.
+template <class Function>
+void Sweep(const std::vector<Span>& spans, const Function& piece) {
+  struct End {
+    double at_m;
+    int span;
+    bool begins;
+  };
+  std::vector<End> ends;
+  ends.reserve(2 * spans.size());
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    ends.push_back({spans[i].from_m, static_cast<int>(i), true});
+    ends.push_back({spans[i].to_m, static_cast<int>(i), false});
+  }
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.at_m < b.at_m; });
+  std::set<int> covering;
+  for (auto end = ends.begin(); end != ends.end();) {
+    const double at_m = end->at_m;
+    for (; end != ends.end() && end->at_m == at_m; ++end) {
+      if (end->begins) {
+        covering.insert(end->span);
+      } else {
+        covering.erase(end->span);
+      }
+    }
+    if (!piece(at_m, covering)) return;
+  }
 }
 
-double GradeAt(const TrackParams& track, double position_m) {
-  if (track.grades.empty()) return 0.0;
-  const auto next = std::upper_bound(track.grades.begin(), track.grades.end(), position_m,
-                                     [](double x, const GradeParams& g) { return x < g.from_m; });
-  return 0.01 * (next == track.grades.begin() ? next : next - 1)->grade_percent;
+/// Where a dip may be felt: a little longer than it is, because DipHeight judges its end by a difference.
+Span SpanOf(const DipParams& dip) {
+  const double to_m = dip.from_m + dip.length_m;
+  return {dip.from_m, to_m + 1e-15 * (std::abs(dip.from_m) + std::abs(to_m))};
 }
 
-RailHeight DipHeight(const DipParams& dip, double position_m) {
+std::vector<Span> SpansOf(const std::vector<DipParams>& dips) {
+  std::vector<Span> spans;
+  spans.reserve(dips.size());
+  for (const DipParams& dip : dips) spans.push_back(SpanOf(dip));
+  return spans;
+}
+
+/// A place where the surface changes.
+struct SurfaceChange {
+  double at_m;
+  int before, behind;  ///< indices of patches; -1: the vehicle's own surface
+  double ramp_m;       ///< its length, half of it on each side
+  int patch;           ///< whose end this is
+
+  double Begin() const { return at_m - 0.5 * ramp_m; }
+  double End() const { return at_m + 0.5 * ramp_m; }
+};
+
+std::vector<SurfaceChange> ChangesOf(const std::vector<FrictionPatchParams>& patches) {
+  std::vector<Span> spans;
+  spans.reserve(patches.size());
+  for (const FrictionPatchParams& patch : patches) spans.push_back({patch.from_m, patch.to_m});
+  std::vector<SurfaceChange> changes;
+  int before = -1;
+  Sweep(spans, [&](double at_m, const std::set<int>& covering) {
+    const int behind = covering.empty() ? -1 : *covering.rbegin();  // the later entry holds
+    if (behind == before) return true;
+    SurfaceChange change{at_m, before, behind, 0.0, -1};
+    const auto ends = [&](int patch) {
+      change.patch = patch;
+      change.ramp_m = std::max(change.ramp_m, patches[patch].RampLength());
+    };
+    if (before >= 0 && patches[before].to_m == at_m) ends(before);
+    if (behind >= 0 && patches[behind].from_m == at_m) ends(behind);
+    changes.push_back(change);
+    before = behind;
+    return true;
+  });
+  return changes;
+}
+
+}  // namespace
+
+// ---- the rules between entries -------------------------------------------------------------------------------------
+
+std::vector<TrackParams::BrokenRule> TrackParams::BrokenRules() const {
+  std::vector<BrokenRule> broken;
+  JudgeGrades(broken);
+  JudgeDips(broken);
+  JudgeRamps(broken);
+  return broken;
+}
+
+void TrackParams::JudgeGrades(std::vector<BrokenRule>& broken) const {
+  for (std::size_t i = 1; i < grades.size(); ++i) {
+    if (grades[i].from_m > grades[i - 1].from_m) continue;
+    broken.push_back(
+        {"grades" + Index(i) + ".from_m",
+         "must be greater than that of the entry before, " + ShortestDecimal(grades[i - 1].from_m),
+         "grades"});
+  }
+}
+
+void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
+  const bool are_spans = std::all_of(dips.begin(), dips.end(), [](const DipParams& dip) {
+    return std::isfinite(dip.from_m) && dip.length_m > 0.0;
+  });
+  if (!are_spans) return;
+  std::size_t overlaps = 0;
+  Sweep(SpansOf(dips), [&](double at_m, const std::set<int>& covering) {
+    overlaps += covering.size();
+    if (overlaps <= kMostDipOverlaps) return true;
+    broken.push_back({"dips" + Index(*covering.rbegin()),
+                      "must not overlap so many others: up to " + ShortestDecimal(at_m) +
+                          " m the stretches between ends of dips lie in more than " +
+                          std::to_string(kMostDipOverlaps) + " dips in all",
+                      "dips"});
+    return false;
+  });
+}
+
+void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
+  const bool are_spans =
+      std::all_of(friction_patches.begin(), friction_patches.end(), [](const FrictionPatchParams& patch) {
+        return std::isfinite(patch.from_m) && std::isfinite(patch.to_m) && patch.from_m < patch.to_m &&
+               patch.RampLength() >= 0.0;
+      });
+  if (!are_spans) return;
+  constexpr double kRounding = 1e-9;  // [m]
+  const std::vector<SurfaceChange> changes = ChangesOf(friction_patches);
+  for (std::size_t i = 1; i < changes.size(); ++i) {
+    const SurfaceChange &one = changes[i - 1], &next = changes[i];
+    if (one.End() <= next.Begin() + kRounding) continue;
+    // The ramp that is there is named before a sharp end.
+    const SurfaceChange& named = next.ramp_m > 0.0 ? next : one;
+    broken.push_back({"friction_patches" + Index(named.patch) + ".ramp_length_m",
+                      "must leave room to the next change of the surface: half of a ramp lies on each side "
+                      "of an end, and the ones "
+                      "at " +
+                          ShortestDecimal(one.at_m) + " m (" + ShortestDecimal(one.ramp_m) + " m long) and " +
+                          ShortestDecimal(next.at_m) + " m (" + ShortestDecimal(next.ramp_m) + " m) overlap",
+                      "friction_patches"});
+  }
+}
+
+// ---- making it ready -----------------------------------------------------------------------------------------------
+
+Track::Track(const TrackParams& params)
+    : has_dips(!params.dips.empty()),
+      has_patches(!params.friction_patches.empty()),
+      dips_(params.dips),
+      patches_(params.friction_patches) {
+  strict_config::Validate(params);
+  SetGrades(params.grades);
+  SetDips();
+  SetPatches();
+}
+
+void Track::SetGrades(const std::vector<GradeParams>& grades) {
+  std::vector<double> cuts;
+  for (std::size_t i = 0; i < grades.size(); ++i) {
+    if (i > 0) cuts.push_back(grades[i].from_m);  // the first also holds before it
+    grades_.push_back(0.01 * grades[i].grade_percent);
+  }
+  if (grades.empty()) grades_.push_back(0.0);
+  grade_pieces_ = Pieces(std::move(cuts));
+}
+
+void Track::SetDips() {
+  std::vector<double> cuts;
+  dips_before_ = {0, 0};  // no dip before the first cut
+  Sweep(SpansOf(dips_), [&](double at_m, const std::set<int>& covering) {
+    cuts.push_back(at_m);
+    dips_by_piece_.insert(dips_by_piece_.end(), covering.begin(), covering.end());
+    dips_before_.push_back(static_cast<int>(dips_by_piece_.size()));
+    return true;
+  });
+  dip_pieces_ = Pieces(std::move(cuts));
+}
+
+void Track::SetPatches() {
+  std::vector<double> cuts;
+  surfaces_.push_back({-1, -1});
+  double last_m = -std::numeric_limits<double>::infinity();
+  const auto cut = [&](double at_m, const SurfacePiece& piece) {
+    if (at_m > last_m) {
+      cuts.push_back(at_m);
+      surfaces_.push_back(piece);
+      last_m = at_m;
+    } else {
+      surfaces_.back() = piece;  // nothing is left of the piece before, which ramps took from both sides
+    }
+  };
+  for (const SurfaceChange& change : ChangesOf(patches_)) {
+    if (change.ramp_m > 0.0) cut(change.Begin(), {change.before, change.behind});
+    cut(change.End(), {change.behind, change.behind});
+  }
+  surface_pieces_ = Pieces(std::move(cuts));
+}
+
+// ---- what is under a wheel -----------------------------------------------------------------------------------------
+
+Track::GradeStretch Track::GradeFrom(double position_m) const {
+  const int piece = grade_pieces_.NumberAt(position_m);
+  return {grade_pieces_[piece], grades_[piece]};
+}
+
+void Track::GradesAt(int count, const double* position_m, double* grade) const {
+  for (int i = 0; i < count; ++i) grade[i] = grades_[grade_pieces_.NumberAt(position_m[i])];
+}
+
+double GradeAt(const Track& track, double position_m) { return track.GradeFrom(position_m).grade; }
+
+RailHeight<double> DipHeight(const DipParams& dip, double position_m) {
   const double x = position_m - dip.from_m;
   if (!(x > 0.0 && x < dip.length_m)) return {0.0, 0.0};
   constexpr double kPi = 3.14159265358979323846;
@@ -27,22 +240,90 @@ RailHeight DipHeight(const DipParams& dip, double position_m) {
   return {-0.5 * dip.depth_m * (1.0 - phase.cos), -kPi * dip.depth_m / dip.length_m * phase.sin};
 }
 
-RailHeight RailHeightAt(const TrackParams& track, double position_m) {
-  RailHeight sum{0.0, 0.0};
-  for (const DipParams& dip : track.dips) {
-    const RailHeight one = DipHeight(dip, position_m);
+Stretch Track::FlatFrom(double position_m) const {
+  const int piece = dip_pieces_.NumberAt(position_m);
+  return dips_before_[piece] == dips_before_[piece + 1] ? dip_pieces_[piece] : kNowhere;
+}
+
+RailHeight<double> Track::HeightAt(double position_m) const {
+  const int piece = dip_pieces_.NumberAt(position_m);
+  RailHeight<double> sum{0.0, 0.0};
+  for (int i = dips_before_[piece]; i < dips_before_[piece + 1]; ++i) {
+    const RailHeight<double> one = DipHeight(dips_[dips_by_piece_[i]], position_m);
     sum.height += one.height;
     sum.slope += one.slope;
   }
   return sum;
 }
 
-double FrictionAt(const TrackParams& track, double position_m, double vehicle_friction) {
-  double friction = vehicle_friction;
-  for (const FrictionPatchParams& patch : track.friction_patches) {
-    if (position_m >= patch.from_m && position_m < patch.to_m) friction = patch.friction_coefficient;
+void Track::HeightsAt(int count, const double* position_m, double* height, double* slope) const {
+  for (int i = 0; i < count; ++i) {
+    const RailHeight<double> rail = HeightAt(position_m[i]);
+    height[i] = rail.height;
+    slope[i] = rail.slope;
   }
-  return friction;
+}
+
+RailHeight<double> RailHeightAt(const Track& track, double position_m) { return track.HeightAt(position_m); }
+
+AdhesionParams Track::SurfaceOf(int patch, const AdhesionParams& vehicle) const {
+  if (patch < 0) return vehicle;
+  AdhesionParams surface = patches_[patch].adhesion.value_or(vehicle);
+  if (patches_[patch].friction_coefficient)
+    surface.friction_coefficient = *patches_[patch].friction_coefficient;
+  return surface;
+}
+
+const AdhesionParams* Track::ShapeOf(const SurfacePiece& piece, const AdhesionParams& vehicle) const {
+  const auto shape_of = [&](int patch) {
+    return patch < 0 || !patches_[patch].adhesion ? &vehicle : &*patches_[patch].adhesion;
+  };
+  return shape_of(piece.before) == shape_of(piece.behind) ? shape_of(piece.before) : nullptr;
+}
+
+Track::SurfaceStretch Track::SurfaceFrom(double position_m, const AdhesionParams& vehicle) const {
+  const int number = surface_pieces_.NumberAt(position_m);
+  const SurfacePiece& piece = surfaces_[number];
+  if (piece.before != piece.behind) return {kNowhere, 0.0, nullptr};
+  const AdhesionParams* const shape = ShapeOf(piece, vehicle);
+  const bool has_own_friction = piece.before >= 0 && patches_[piece.before].friction_coefficient;
+  return {surface_pieces_[number],
+          has_own_friction ? *patches_[piece.before].friction_coefficient : shape->friction_coefficient,
+          shape};
+}
+
+AdhesionParams Track::SurfaceAt(double position_m, const AdhesionParams& vehicle) const {
+  const int number = surface_pieces_.NumberAt(position_m);
+  const SurfacePiece& piece = surfaces_[number];
+  AdhesionParams surface = SurfaceOf(piece.before, vehicle);
+  if (piece.before == piece.behind) return surface;
+  const AdhesionParams behind = SurfaceOf(piece.behind, vehicle);
+  const Stretch ramp = surface_pieces_[number];
+  const double share = (position_m - ramp.from_m) / (ramp.to_m - ramp.from_m);
+  for (double AdhesionParams::*const field :
+       {&AdhesionParams::friction_coefficient, &AdhesionParams::friction_ratio,
+        &AdhesionParams::friction_decay_s_per_m, &AdhesionParams::adhesion_reduction,
+        &AdhesionParams::slip_reduction}) {
+    surface.*field += share * (behind.*field - surface.*field);
+  }
+  return surface;
+}
+
+const AdhesionParams* Track::SurfacesAt(int count, const double* position_m, const AdhesionParams& vehicle,
+                                        double* values) const {
+  const AdhesionParams* shape = nullptr;
+  for (int i = 0; i < count; ++i) {
+    const AdhesionParams surface = SurfaceAt(position_m[i], vehicle);
+    values[i] = surface.friction_coefficient;
+    values[count + i] = surface.friction_ratio;
+    values[2 * count + i] = surface.friction_decay_s_per_m;
+    values[3 * count + i] = surface.adhesion_reduction;
+    values[4 * count + i] = surface.slip_reduction;
+    const AdhesionParams* const of_this =
+        ShapeOf(surfaces_[surface_pieces_.NumberAt(position_m[i])], vehicle);
+    shape = i == 0 || shape == of_this ? of_this : nullptr;
+  }
+  return shape;
 }
 
 }  // namespace train_dynamics

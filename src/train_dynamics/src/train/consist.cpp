@@ -26,6 +26,7 @@ Consist::Consist(const TrainParams& train) {
         centre_m.push_back(centre_m.back() -
                            0.5 * (vehicle(vehicles() - 1).length_m + group.vehicle.length_m));
       }
+      if (group.locomotive) locomotives.push_back(vehicles());
       vehicle_type.push_back(type);
     }
   }

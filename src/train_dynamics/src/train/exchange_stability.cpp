@@ -9,15 +9,9 @@
 namespace train_dynamics {
 
 double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg) {
-  double k = connection.draw_bar.stiffness_n_per_m, c = connection.draw_bar.damping_ns_per_m;
-  if (connection.kind == ConnectionKind::kDraftGears) {
-    const DraftGearParams& gear = connection.draft_gear;
-    const bool sticks = gear.friction == DraftGearFriction::kStickSpring;
-    const double friction = kLargeCouplerForce * gear.static_friction_coefficient /
-                            (2.0 * gear.TanWedge() * gear.smoothing_speed_mps);
-    k = sticks ? gear.stick_stiffness_n_per_m : 0.5 * gear.spring_stiffness_n_per_m;
-    c = sticks ? 0.0 : friction;
-  }
+  const auto at_large_force = [](const auto& law) { return law.TangentAt(kLargeCouplerForce); };
+  const ConnectionTangent tangent = std::visit(at_large_force, connection.Law());
+  const double k = tangent.stiffness_n_per_m, c = tangent.damping_ns_per_m;
   return head_mass_kg / (c + std::sqrt(c * c + k * head_mass_kg));
 }
 

@@ -1,7 +1,8 @@
 #include "train_dynamics/train/in_train_forces.h"
 
+#include <algorithm>
+
 #include "train_dynamics/train/snapshot.h"
-#include "train_dynamics/vehicle/lane_kernels.h"
 
 namespace train_dynamics {
 
@@ -15,35 +16,56 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
   }
   const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
   for (Set& set : sets_) {
-    set.Resize(PaddedToLanes(static_cast<int>(set.place.size())));
-    const bool has_slack = set.type.kind == ConnectionKind::kDraftGears;
-    const double extension_m = has_slack ? side * set.type.gear.params.slack_m : 0.0;
-    for (std::size_t i = 0; i < set.place.size(); ++i) set.extension_m[i] = set.stick_m[i] = extension_m;
+    set.Begin(side * std::visit([](const auto& law) { return law.Slack(); }, set.law));
   }
 }
 
-void InTrainForces::Set::Resize(int padded) {
+void InTrainForces::Set::Begin(double at_m) {
+  const int padded = PaddedToLanes(static_cast<int>(place.size()));
   for (std::vector<double>* array :
-       {&start_extension_m, &next_extension_m, &rate_mps, &extension_m, &force_n, &elastic_n, &stick_m,
-        &stick_n, &tension_n, &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
+       {&start_extension_m, &next_extension_m, &rate_mps, &force_n, &elastic_n, &tension_n, &tension_time_s,
+        &compression_n, &compression_time_s, &dissipated_j}) {
     array->assign(padded, 0.0);
   }
+  extension_m.assign(padded, at_m);
+  parted_s.assign(padded, -1.0);
+  const auto remember = [&](const auto& of) {
+    auto begin = of.AtRest(at_m);
+    stored_j.assign(padded, StoredEnergy(of, at_m, begin));
+    begin.ForEachField([&](double field) { memory.insert(memory.end(), padded, field); });
+  };
+  std::visit(remember, law);
 }
 
 ConnectionArrays InTrainForces::Set::Arrays() {
   ConnectionArrays arrays{};
+  arrays.count = Padded();
+  arrays.strength_n = strength_n;
   arrays.rate_mps = rate_mps.data();
   arrays.extension_m = extension_m.data();
+  arrays.memory = memory.data();
   arrays.force_n = force_n.data();
   arrays.elastic_n = elastic_n.data();
-  arrays.stick_m = stick_m.data();
-  arrays.stick_n = stick_n.data();
   arrays.tension_n = tension_n.data();
   arrays.tension_time_s = tension_time_s.data();
   arrays.compression_n = compression_n.data();
   arrays.compression_time_s = compression_time_s.data();
+  arrays.stored_j = stored_j.data();
   arrays.dissipated_j = dissipated_j.data();
+  arrays.parted_s = parted_s.data();
   return arrays;
+}
+
+void InTrainForces::Set::Part(double time_s) {
+  const auto lose = [&](const auto& of) {
+    if (of.kStoresByMemory) return;  // booked by the work of the interval
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      if (parted_s[i] != time_s) continue;
+      auto memory_at = of.AtRest(extension_m[i]);  // does not count
+      dissipated_j[i] += StoredEnergy(of, extension_m[i], memory_at);
+    }
+  };
+  std::visit(lose, law);
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
@@ -65,8 +87,11 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
       const int c = set.place[i];
       set.rate_mps[i] = head_velocity_mps[c] - head_velocity_mps[c + 1];
     }
-    BestLaneKernels().connection_forces(set.type, prediction_s_, time_s,
-                                        static_cast<int>(set.rate_mps.size()), set.Arrays());
+    const auto evaluate = [&](const auto& law) {
+      BestConnectionKernels().Of(law).forces(law, prediction_s_, time_s, set.Arrays());
+    };
+    std::visit(evaluate, set.law);
+    if (set.strength_n > 0.0) set.Part(time_s);
     for (std::size_t i = 0; i < count; ++i) force_n[set.place[i] + 1] = set.force_n[i];
   }
 }
@@ -79,8 +104,10 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
       set.next_extension_m[i] =
           set.start_extension_m[i] + (head_displacement_m[c] - head_displacement_m[c + 1]);
     }
-    BestLaneKernels().connection_work(static_cast<int>(set.rate_mps.size()), set.next_extension_m.data(),
-                                      set.Arrays());
+    const auto book = [&](const auto& law) {
+      BestConnectionKernels().Of(law).work(law, set.next_extension_m.data(), set.Arrays());
+    };
+    std::visit(book, set.law);
   }
 }
 
@@ -101,14 +128,30 @@ std::vector<ForceExtremes> InTrainForces::Extremes() const {
   return extremes;
 }
 
+template <class OfSet, class Function>
+void InTrainForces::ForEachField(OfSet& set, int at, Function& function) {
+  for (std::size_t i = static_cast<std::size_t>(at); i < set.memory.size(); i += set.rate_mps.size()) {
+    function(set.memory[i]);
+  }
+}
+
+std::vector<Parting> InTrainForces::Partings() const {
+  std::vector<Parting> partings;
+  for (int c = 0; c < connections(); ++c) {
+    const double time_s = sets_[places_[c].set].parted_s[places_[c].at];
+    if (time_s >= 0.0) partings.push_back({c, time_s});
+  }
+  std::stable_sort(partings.begin(), partings.end(),
+                   [](const Parting& a, const Parting& b) { return a.time_s < b.time_s; });
+  return partings;
+}
+
 void InTrainForces::AddMemoryTo(Digest& digest) const {
+  MemoryDigest add(digest);
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
-    const bool remembers = set.type.kind == ConnectionKind::kDraftGears &&
-                           set.type.gear.params.friction == DraftGearFriction::kStickSpring;
-    if (!remembers) continue;
-    digest.Add(set.stick_m[place.at]);
-    digest.Add(set.stick_n[place.at]);
+    ForEachField(set, place.at, add);
+    if (set.strength_n > 0.0) add(set.parted_s[place.at]);
   }
 }
 
@@ -117,10 +160,11 @@ void InTrainForces::ForEachMemory(Self& self, Function& function) {
   for (const Place& place : self.places_) {
     auto& set = self.sets_[place.set];
     for (auto* array :
-         {&set.start_extension_m, &set.extension_m, &set.stick_m, &set.stick_n, &set.dissipated_j,
+         {&set.start_extension_m, &set.extension_m, &set.stored_j, &set.dissipated_j, &set.parted_s,
           &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
       function((*array)[place.at]);
     }
+    ForEachField(set, place.at, function);
   }
 }
 
@@ -140,14 +184,18 @@ ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
-    const double q = set.extension_m[place.at];
-    if (set.type.kind == ConnectionKind::kDrawBar) {
-      energy.potential += 0.5 * set.type.bar.stiffness_n_per_m * q * q;
-      energy.draw_bars += set.dissipated_j[place.at];
-    } else {
-      energy.potential += GearEnergy(set.type.gear.params, q);
-      energy.draft_gears += set.dissipated_j[place.at];
-    }
+    const bool loose = set.parted_s[place.at] >= 0.0 && set.extension_m[place.at] > 0.0;
+    const auto book = [&](const auto& law) {
+      if (law.kStoresByMemory) {
+        energy.potential += set.stored_j[place.at];
+      } else if (!loose) {
+        auto memory = law.AtRest(set.extension_m[place.at]);  // does not count
+        energy.potential += StoredEnergy(law, set.extension_m[place.at], memory);
+      }
+      (law.kAccount == ConnectionAccount::kDrawBars ? energy.draw_bars : energy.draft_gears) +=
+          set.dissipated_j[place.at];
+    };
+    std::visit(book, set.law);
   }
   return energy;
 }

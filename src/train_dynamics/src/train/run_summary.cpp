@@ -49,6 +49,17 @@ std::string Extreme(const std::vector<ForceExtremes>& extremes, double ForceExtr
          ", \"time_s\": " + Number((*largest).*time) + "}";
 }
 
+/// The connections that broke, as the entries of a JSON array.
+std::string Partings(const std::vector<Parting>& partings) {
+  std::string entries;
+  for (const Parting& parting : partings) {
+    entries += (entries.empty() ? "" : ", ") +
+               ("{\"connection\": " + std::to_string(parting.connection + 1)) +
+               ", \"time_s\": " + Number(parting.time_s) + "}";
+  }
+  return entries;
+}
+
 }  // namespace
 
 void RunSummary::Observe(const TrainRecord& record) {
@@ -121,7 +132,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"max_compression_n\": "
        << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::compression_n,
                   &ForceExtremes::compression_time_s)
-       << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
+       << ",\n  \"partings\": [" << Partings(master.in_train_forces().Partings())
+       << "],\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_energy_j_)
        << ",\n    \"final_j\": " << Number(ledger_.Stored())
        << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j)

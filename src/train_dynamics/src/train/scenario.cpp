@@ -26,47 +26,73 @@ std::string Short(double value) {
   return text;
 }
 
-/// What the number of a vehicle must be.
-std::string VehicleRule(int vehicles) {
-  if (vehicles == 1) return "must be 1 or -1, because the train has 1 vehicle";
-  const std::string n = std::to_string(vehicles);
-  return "must be in [1, " + n + "], or in [-" + n + ", -1] from the rear, because the train has " + n +
-         " vehicles";
-}
-
 /// Warns of a connection that the exchange interval or the step is too long for.
 void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
                       const ConnectionParams& connection, double lightest_kg,
                       std::vector<Warning>& warnings) {
-  const DraftGearParams& gear = connection.draft_gear;
-  const bool is_smooth =
-      connection.kind == ConnectionKind::kDraftGears && gear.friction == DraftGearFriction::kSmooth;
+  const ConnectionLaw law = connection.Law();
+  const bool depends_on_force =
+      std::visit([](const auto& of) { return of.TangentAt(kLargeCouplerForce).depends_on_force; }, law);
   const double longest_s = LongestStableExchange(connection, LightestCouplerHead(scenario));
   // A multiple of dt_s may exceed the limit by no more than a rounding error.
   if (scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
     warnings.push_back({"exchange_interval_s", "exchange_interval_s " + Short(scenario.exchange_interval_s) +
                                                    " is above " + Short(longest_s) + ", the longest that " +
-                                                   key + " stands" + (is_smooth ? " at 900 kN" : "") +
+                                                   key + " stands" + (depends_on_force ? " at 900 kN" : "") +
                                                    ": coupler forces may break down; take a shorter one"});
   }
-  if (!is_smooth) return;
+  const auto* smooth = std::get_if<SmoothGears>(&law);
+  if (smooth == nullptr) return;
   const std::string speed_key = key + ".draft_gear.smoothing_speed_mps";
-  const double lowest_mps = 2.0 * kLargeCouplerForce * gear.static_friction_coefficient * scenario.dt_s /
-                            (gear.TanWedge() * lightest_kg);
-  if (gear.smoothing_speed_mps >= lowest_mps) return;
+  const double speed_mps = smooth->params.smoothing_speed_mps;
+  const double lowest_mps = smooth->LeastSmoothingSpeed(kLargeCouplerForce, scenario.dt_s, lightest_kg);
+  if (speed_mps >= lowest_mps) return;
   warnings.push_back(
-      {speed_key, speed_key + " " + Short(gear.smoothing_speed_mps) + " is below " + Short(lowest_mps) +
+      {speed_key, speed_key + " " + Short(speed_mps) + " is below " + Short(lowest_mps) +
                       ", the least for dt_s " + Short(scenario.dt_s) + " at 900 kN and " +
                       Short(lightest_kg) +
                       " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
-}  // namespace
-
-int VehicleIndex(int number, int vehicles) {
-  const int index = number > 0 ? number - 1 : vehicles + number;
-  return number != 0 && index >= 0 && index < vehicles ? index : -1;
+/// The positions that wheels can have in a run at most.
+///
+/// Without traction nothing but the grade drives a train: its speed stays below that of the start plus g T times the
+/// steepest fall ahead, and likewise backwards. With traction this bound must grow.
+Stretch ReachOf(const ScenarioParams& scenario) {
+  double steepest_fall = 0.0, steepest_rise = 0.0;
+  for (const GradeParams& grade : scenario.track.grades) {
+    steepest_fall = std::max(steepest_fall, -0.01 * grade.grade_percent);
+    steepest_rise = std::max(steepest_rise, 0.01 * grade.grade_percent);
+  }
+  double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
+  double rear_m = front_m;
+  for (const ConsistGroupParams& group : scenario.train.consist)
+    rear_m -= group.count * group.vehicle.length_m;
+  const double time_s = scenario.duration_s, speed_mps = scenario.InitialSpeed();
+  const auto way = [&](double start_mps, double slope) {
+    return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
+  };
+  return {rear_m - way(-speed_mps, steepest_rise), front_m + way(speed_mps, steepest_fall)};
 }
+
+/// Warns once of the entries of a list of the track that no wheel reaches.
+template <class Entry, class EndOf>
+void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of,
+                 const Stretch& reach, std::vector<Warning>& warnings) {
+  std::size_t beyond = 0, first = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].from_m < reach.to_m && end_of(entries[i]) > reach.from_m) continue;
+    if (beyond++ == 0) first = i;
+  }
+  if (beyond == 0) return;
+  const std::string key = list + Index(first);
+  warnings.push_back({key, key + " on [" + Short(entries[first].from_m) + ", " +
+                               Short(end_of(entries[first])) + "] m is reached by no wheel: they are on [" +
+                               Short(reach.from_m) + ", " + Short(reach.to_m) + "] m at most in this run" +
+                               (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
+}
+
+}  // namespace
 
 int ScenarioParams::StepsPerExchange() const { return static_cast<int>(Parts(exchange_interval_s, dt_s)); }
 long ScenarioParams::Exchanges() const { return Parts(duration_s, exchange_interval_s); }
@@ -119,7 +145,7 @@ bool ScenarioParams::Multiple(double whole, double part) {
          std::abs(ratio - std::round(ratio)) < 1e-6 * std::max(1.0, 1e-3 * ratio);
 }
 
-std::vector<ScenarioParams::BrokenRule> ScenarioParams::BrokenRules() const {
+std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
   JudgeTimes(broken);
   JudgeBrake(broken);
@@ -144,50 +170,17 @@ void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {
 
 void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
   if (!brake || !pressure_table.empty()) return;
-  constexpr std::size_t kMostArrivals = 10000000;  // a second and half a gigabyte
-  const std::size_t per_command = brake->sources.size() * static_cast<std::size_t>(train.VehicleCount());
-  if (commands.size() * per_command > kMostArrivals) {
-    broken.push_back({"commands",
-                      "must list at most " + std::to_string(kMostArrivals / per_command) + " commands for " +
-                          std::to_string(train.VehicleCount()) + " vehicles and " +
-                          std::to_string(brake->sources.size()) + " brake sources",
-                      {"brake", "train"}});
-    return;
-  }
-  const std::vector<double>& measured = brake->service.reduction_kpa;
-  const bool releases = std::any_of(brake->sources.begin(), brake->sources.end(),
-                                    [](const BrakeSourceParams& source) { return source.releases; });
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const BrakeCommand& command = commands[i];
-    if (command.kind == BrakeCommandKind::kApply && !measured.empty() &&
-        !(command.reduction_kpa >= measured.front() && command.reduction_kpa <= measured.back())) {
-      const Range range{measured.front(), measured.back(), false, false};
-      broken.push_back({"commands" + Index(i) + ".reduction_kpa",
-                        range.Rule() + " (brake.service.reduction_kpa)",
-                        {"brake"}});
-    }
-    if (command.kind == BrakeCommandKind::kRelease && !releases) {
-      broken.push_back({"brake",
-                        "must have a source that releases the brakes, as commands" + Index(i) + " demands",
-                        {"commands"}});
-    }
-  }
-  const int vehicles = train.VehicleCount();
-  for (std::size_t i = 0; i < brake->sources.size(); ++i) {
-    const BrakeSourceParams& source = brake->sources[i];
-    if (VehicleIndex(source.vehicle, vehicles) >= 0) continue;
-    const std::string which = source.name.empty() ? "" : " (" + source.name + ")";
-    broken.push_back({"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {"train"}});
-  }
+  const std::vector<BrokenRule> rules = brake->BrokenRules(commands, train.VehicleCount());
+  broken.insert(broken.end(), rules.begin(), rules.end());
 }
 
 void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   if (!Uses(VehicleModel::kTwoD) || train.consist.empty()) return;
   /// Where vehicles of the 2D model stand at the start, without a gap.
-  struct Stretch {
+  struct StandingStretch {
     double rear_m, front_m;
   };
-  std::vector<Stretch> stretches;
+  std::vector<StandingStretch> stretches;
   double rear_m = start_position_m + 0.5 * train.consist.front().vehicle.length_m;
   bool goes_on = false;
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
@@ -203,7 +196,7 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 0; i < track.dips.size(); ++i) {
     const DipParams& dip = track.dips[i];
     if (dip.depth_m == 0.0) continue;
-    for (const Stretch& stretch : stretches) {
+    for (const StandingStretch& stretch : stretches) {
       if (!(dip.from_m < stretch.front_m && dip.from_m + dip.length_m > stretch.rear_m)) continue;
       broken.push_back({"track.dips" + Index(i),
                         "must not lie under " + who + " on [" + Short(stretch.rear_m) + ", " +
@@ -241,6 +234,16 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     leaves_out("track.dips", scenario.track.dips.size());
     leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
+  if (scenario.Uses(VehicleModel::kTwoD) && !train.consist.empty()) {
+    const Stretch reach = ReachOf(scenario);
+    WarnOfReach(
+        "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
+        reach, warnings);
+    WarnOfReach(
+        "track.friction_patches", scenario.track.friction_patches,
+        [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach,
+        warnings);
+  }
   if (scenario.Uses(VehicleModel::kTwoD)) {
     const std::vector<VehicleModel> models = scenario.VehicleModels();
     for (std::size_t i = 0; i < scenario.detail_vehicles.size(); ++i) {
@@ -252,13 +255,27 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                                    ModelName(model) + " model, which has no details"});
     }
   }
+  if (scenario.brake && scenario.pressure_table.empty()) {
+    const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands);
+    warnings.insert(warnings.end(), of_brake.begin(), of_brake.end());
+  }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";
     if (scenario.brake) warnings.push_back({"brake", "brake is" + unused});
+    if (train.connection.strength_n > 0.0) {
+      warnings.push_back({"train.connection.strength_n",
+                          "the brake pipe stays closed where a connection breaks: the pressures come from "
+                          "pressure_table"});
+    }
     if (!scenario.commands.empty())
       warnings.push_back({"commands", "commands (" + Counted(scenario.commands.size()) + ") are" + unused});
   }
   return warnings;
+}
+
+BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist) {
+  return {*scenario.brake, scenario.commands, consist.centre_m,
+          PressureGrid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()}};
 }
 
 }  // namespace train_dynamics

@@ -100,6 +100,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.state_digest);
   Add(checkpoint.vehicles, writer);
   writer.Add(checkpoint.connections);
+  writer.Add(checkpoint.brake);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
   return Finish(writer);
@@ -113,6 +114,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.state_digest = reader.Word();
   checkpoint.vehicles = States(reader);
   checkpoint.connections = reader.Numbers();
+  checkpoint.brake = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();
   reader.End();

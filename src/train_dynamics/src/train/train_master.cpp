@@ -8,16 +8,18 @@
 namespace train_dynamics {
 
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
-                         PressureSource pressures)
+                         BrakeSystem brake)
     : scenario_(scenario),
       transport_(transport),
-      pressures_(std::move(pressures)),
+      brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
       reply_(consist.vehicles(), scenario.DetailedVehicles()) {
   record_.vehicles = reply_;
   record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
+  for (const ConnectionParams& type : consist.connection_types)
+    can_part_ = can_part_ || type.strength_n > 0.0;
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
   request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
@@ -39,6 +41,10 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
                         ", and duration_s ends with exchange " + std::to_string(scenario_.Exchanges()));
   }
   forces_.SetMemory(checkpoint.connections);
+  OpenPipes();
+  MemoryReader brake(checkpoint.brake);
+  brake_.ForEachField(brake);
+  brake.End();
   transport_.Resume(checkpoint.exchange, checkpoint.vehicles, reply_);
   last_speed_mps_ = reply_.speed_mps;
   exchange_ = first_exchange_ = checkpoint.exchange;
@@ -56,13 +62,17 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   checkpoint.state_digest = digest_;
   checkpoint.vehicles = reply_.snapshot;
   checkpoint.connections = forces_.Memory();
+  MemoryWriter brake;
+  BrakeSystem(brake_).ForEachField(brake);  // of a copy: the list of fields is written for changing them, too
+  checkpoint.brake = brake.Take();
   return checkpoint;
 }
 
 void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
-  pressures_(middle_s, request_.cylinder_pressure_pa);
+  if (can_part_) OpenPipes();
+  brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
 
   const std::uint64_t next = exchange_ + 1;
   request_.exchange = exchange_;
@@ -82,6 +92,13 @@ void TrainMaster::Exchange() {
   if (request_.record) ShowRecord();
 }
 
+void TrainMaster::OpenPipes() {
+  const std::vector<Parting> partings = forces_.Partings();
+  for (; opened_pipes_ < partings.size(); ++opened_pipes_) {
+    brake_.OpenPipe(partings[opened_pipes_].time_s, partings[opened_pipes_].connection);
+  }
+}
+
 void TrainMaster::ShowRecord() {
   TrainRecord& record = record_;
   std::swap(record.vehicles, static_cast<VehicleRecords&>(reply_));  // the next record fills all of it anew
@@ -95,6 +112,7 @@ void TrainMaster::ShowRecord() {
   digest.Add(digest_);
   for (std::uint64_t vehicle : record.vehicles.state_digest) digest.Add(vehicle);
   forces_.AddMemoryTo(digest);
+  brake_.ForEachField(MemoryDigest(digest));
   digest_ = digest.value();
 
   double mass = 0.0, momentum = 0.0, moment = 0.0;
@@ -109,7 +127,7 @@ void TrainMaster::ShowRecord() {
   record.mean_position_m = moment / mass;
   record.held = request_;
   forces_.Extensions(record.coupler_extension_m);
-  pressures_(time_s(), record.cylinder_pressure_pa);
+  brake_.PressuresAt(time_s(), record.cylinder_pressure_pa);
   record.state_digest = digest_;
   record.ledger.reset();
   if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());

@@ -33,10 +33,10 @@ VehicleEnergy EnergyOf(double kinetic_j, double potential_j, const VehicleWork<d
   return energy;
 }
 
-VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const TrackParams& /*track*/, const LtdState<double>& s) {
+VehicleEnergy EnergyOf(const LtdVehicle& vehicle, const Track& /*track*/, const LtdState<double>& s) {
   return EnergyOf(KineticEnergy(vehicle, s), 0.0, s.work);
 }
-VehicleEnergy EnergyOf(const Wagon& wagon, const TrackParams& track, const WagonState<double>& s) {
+VehicleEnergy EnergyOf(const Wagon& wagon, const Track& track, const WagonState<double>& s) {
   return EnergyOf(KineticEnergy(wagon, s), PotentialEnergy(wagon, track, s), s.work);
 }
 
@@ -53,10 +53,13 @@ std::string Describe(const char* what, double value, const char* unit) {
   return std::string(what) + " is " + std::to_string(value) + " " + unit;
 }
 
-std::string FaultOf(const LtdState<double>& s) { return Describe("speed", s.v_mps, "m/s"); }
+std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const LtdState<double>& s) {
+  return Describe("speed", s.v_mps, "m/s");
+}
 
 /// Names the first body that is not where a body can be.
-std::string FaultOf(const WagonState<double>& s) {
+std::string FaultOf(const Wagon& wagon, const Track& track, const WagonState<double>& s) {
+  const OverRail<double> over = OverRailOf(wagon, track, s);
   for (int b = 0; b < kBodies; ++b) {
     const auto describe = [b](const char* what, double value, const char* unit) {
       return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
@@ -64,10 +67,10 @@ std::string FaultOf(const WagonState<double>& s) {
     const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
     if (wrong(s.velocity.x[b], absurd::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
     if (wrong(s.velocity.z[b], absurd::kSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
-    if (wrong(s.position.z[b], absurd::kMovement))
-      return describe("vertical displacement", s.position.z[b], "m");
-    if (b < kWheelset1 && wrong(s.position.pitch[b], absurd::kPitch))
-      return describe("pitch", s.position.pitch[b], "rad");
+    if (wrong(over.z[b], absurd::kMovement))
+      return describe("vertical displacement over the rail", over.z[b], "m");
+    if (b < kWheelset1 && wrong(over.pitch[b], absurd::kPitch))
+      return describe("pitch over the rail", over.pitch[b], "rad");
     if (b >= kWheelset1 && wrong(s.velocity.pitch[b], absurd::kRotation)) {
       return describe("rotation", s.velocity.pitch[b], "rad/s");
     }
@@ -183,10 +186,11 @@ class BatchedBlock : public VehicleBlock {
   VehicleFault FindFault() const override {
     for (const Run& run : runs_) {
       const VehicleFault fault = std::visit(
-          [&run](const auto& batch) {
+          [&run, this](const auto& batch) {
             for (int i = 0; i < batch.size(); ++i) {
               const auto state = batch.StateOf(i);
-              if (!IsSound(state)) return VehicleFault{run.begin + i, FaultOf(state)};
+              if (IsSound(batch.vehicle(), track_, state)) continue;
+              return VehicleFault{run.begin + i, FaultOf(batch.vehicle(), track_, state)};
             }
             return VehicleFault();
           },
@@ -211,7 +215,7 @@ class BatchedBlock : public VehicleBlock {
                         " model has " + std::to_string(expected));
   }
 
-  TrackParams track_;
+  Track track_;
   int first_;
   std::vector<Run> runs_;
 };

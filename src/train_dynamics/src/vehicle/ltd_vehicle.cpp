@@ -1,6 +1,6 @@
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 
-#include "train_dynamics/validate.h"
+#include "strict_config/validate.h"
 
 namespace train_dynamics {
 
@@ -11,7 +11,7 @@ LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia
       inertia_kg(params.TotalMass() +
                  (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, 4) : 0.0)),
       integrator(method) {
-  Validate(params);
+  strict_config::Validate(params);
 }
 
 }  // namespace train_dynamics

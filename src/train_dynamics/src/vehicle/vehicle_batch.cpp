@@ -180,7 +180,7 @@ void VehicleBatch<Vehicle>::SetState(int i, const State& state) {
 }
 
 template <class Vehicle>
-bool VehicleBatch<Vehicle>::Advance(const TrackParams& track, double dt, int steps, const LoadPlaces& loads,
+bool VehicleBatch<Vehicle>::Advance(const Track& track, double dt, int steps, const LoadPlaces& loads,
                                     const ReplyPlaces& reply, bool with_output) {
   const int lanes = kernels_.lanes, full = size_ / lanes;
   const auto step = [&](int packs, int from, const LoadPlaces& loads_there, const ReplyPlaces& reply_there) {
@@ -238,19 +238,13 @@ void VehicleBatch<Vehicle>::Digests(std::uint64_t* digest) const {
 }
 
 const std::vector<LaneKernels>& AllLaneKernels() {
-  static const std::vector<LaneKernels> kernels = [] {
-    std::vector<LaneKernels> usable;
 #if defined(TRAIN_BRAKE_X86_KERNELS)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl")) {
-      usable.push_back(kAvx512LaneKernels);
-    }
-    if (__builtin_cpu_supports("avx2")) usable.push_back(kAvx2LaneKernels);
+  static const std::vector<LaneKernels> kernels =
+      RunnableKernels(&kAvx512LaneKernels, &kAvx2LaneKernels, kBaseLaneKernels, kScalarLaneKernels);
+#else
+  static const std::vector<LaneKernels> kernels =
+      RunnableKernels<LaneKernels>(nullptr, nullptr, kBaseLaneKernels, kScalarLaneKernels);
 #endif
-    usable.push_back(kBaseLaneKernels);
-    usable.push_back(kScalarLaneKernels);
-    return usable;
-  }();
   return kernels;
 }
 

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "strict_config/validate.h"
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/contact/polach.h"
-#include "train_dynamics/validate.h"
 
 namespace train_dynamics {
 namespace {
@@ -48,7 +48,7 @@ VerticalVector VerticalForces(const Wagon& w, const VerticalVector& q) {
 }  // namespace
 
 Wagon::Wagon(const VehicleParams& vehicle) : params(vehicle), wedge(vehicle.friction_wedge) {
-  Validate(params);
+  strict_config::Validate(params);
   const VehicleParams& p = params;
   const auto set_body = [this](int i, double mass, double inertia) {
     mass_kg[i] = mass;
@@ -137,7 +137,7 @@ double KineticEnergy(const Wagon& w, const WagonState<double>& s) {
   return 0.5 * twice;
 }
 
-double PotentialEnergy(const Wagon& w, const TrackParams& track, const WagonState<double>& s) {
+double PotentialEnergy(const Wagon& w, const Track& track, const WagonState<double>& s) {
   const VehicleParams& p = w.params;
   const ElementVector<double> e = ElementsOf(w, s.position);
   const auto spring = [](const LinearSpringDamper& law, double d) {
@@ -157,7 +157,8 @@ double PotentialEnergy(const Wagon& w, const TrackParams& track, const WagonStat
   for (int i = 0; i < kBodies; ++i) energy += kGravity * w.mass_kg[i] * s.position.z[i];
   for (int i = 0; i < kWheelsets; ++i) {
     const int b = kWheelset1 + i;
-    const RailHeight rail = RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
+    const RailHeight<double> rail =
+        RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
     energy += 2.0 * OneSidedEnergy(p.wheel_rail.normal.stiffness_n_per_m, rail.height - s.position.z[b]);
   }
   return energy;

@@ -33,15 +33,12 @@ struct Picture {
 };
 
 /// The whole view of a train: see layout.h. Keeps in mind what it has seen, so that scales only grow.
-///
-/// The scenario does not say which vehicles are locomotives. In a train of several groups, a vehicle that is
-/// a group of its own is taken for one.
 class Board {
  public:
   explicit Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions& options = {});
 
   int vehicles() const { return consist_.vehicles(); }
-  const std::vector<int>& locomotives() const { return locomotives_; }
+  const std::vector<int>& locomotives() const { return consist_.locomotives; }
 
   /// @param snapshot  arrays as long as the train, or empty
   Picture Draw(const Snapshot& snapshot, const Selection& selection);
@@ -70,7 +67,6 @@ class Board {
 
   train_dynamics::ScenarioParams scenario_;
   train_dynamics::Consist consist_;
-  std::vector<int> locomotives_;   ///< indices
   std::vector<double> masses_kg_;  ///< [vehicle]
   BoardOptions options_;
   Elevation elevation_;

@@ -31,7 +31,7 @@ class CloseUp {
     Color color;                                ///< of its carbody
   };
 
-  void Draw(Drawing& drawing, const train_dynamics::TrackParams& track, const Sight& sight) const;
+  void Draw(Drawing& drawing, const train_dynamics::Track& track, const Sight& sight) const;
 
   /// Where a point of a body is drawn.
   /// @param offset_forward_m, offset_up_m  from the body's centre of gravity, in the body
@@ -44,7 +44,7 @@ class CloseUp {
   static constexpr double kLoadScale = 2.8 / 400e3, kFrictionScale = 4.0 / 10e3, kCouplerScale = 12.0 / 1e6;
 
  private:
-  void DrawRail(Drawing& drawing, const train_dynamics::TrackParams& track, double centre_m) const;
+  void DrawRail(Drawing& drawing, const train_dynamics::Track& track, double centre_m) const;
   void DrawBodies(Drawing& drawing, const train_dynamics::BodyVector<double>& position, Color body) const;
   void DrawWheelset(Drawing& drawing, const train_dynamics::BodyVector<double>& position, int wheelset,
                     bool slides) const;

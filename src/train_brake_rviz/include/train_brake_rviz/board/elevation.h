@@ -14,8 +14,11 @@ class Elevation {
   /// [m] above the rail at position 0 without dips
   double operator()(double position_m) const;
 
+  const train_dynamics::Track& track() const { return track_; }
+
  private:
-  train_dynamics::TrackParams track_;
+  train_dynamics::Track track_;
+  std::vector<train_dynamics::GradeParams> grades_;
   std::vector<double> height_m_;  ///< [grade] where each begins
 };
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/judgement.h"
 #include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/parameters.h"
 
@@ -25,7 +28,11 @@ struct ServiceApplicationParams {
     v.Numbers("wave_speed_mps", wave_speed_mps, kPositive);
     v.Numbers("rise_rate_per_s", rise_rate_per_s, kPositive);
     v.Check(reduction_kpa.size() >= 4, "reduction_kpa", "must list at least 4 reductions");
-    v.Check(Ascending(reduction_kpa), "reduction_kpa", "must ascend");
+    for (std::size_t i = 1; i < reduction_kpa.size(); ++i) {
+      v.Check(reduction_kpa[i] > reduction_kpa[i - 1], "reduction_kpa[" + std::to_string(i) + "]",
+              "must be greater than the one before, " + ShortestDecimal(reduction_kpa[i - 1]),
+              {"reduction_kpa"});
+    }
     v.Check(cylinder_pressure_kpa.size() == reduction_kpa.size(), "cylinder_pressure_kpa", kSameLength);
     v.Check(wave_speed_mps.size() == reduction_kpa.size(), "wave_speed_mps", kSameLength);
     v.Check(rise_rate_per_s.size() == reduction_kpa.size(), "rise_rate_per_s", kSameLength);
@@ -33,19 +40,17 @@ struct ServiceApplicationParams {
 
  private:
   static constexpr const char* kSameLength = "must have as many values as reduction_kpa";
-  static bool Ascending(const std::vector<double>& values);
 };
 
 /// An emergency application. Its pressure rises the slower the further a vehicle is from the source that
-/// vents there:
-///
-///   beta(d) = rise_rate_per_s - rise_rate_fall_per_s * d / rise_rate_fall_length_m
+/// vents there: see EmergencyRiseRate.
 struct EmergencyApplicationParams {
   double cylinder_pressure_kpa = kRequired;
   double wave_speed_mps = kRequired;
   double rise_rate_per_s = kRequired;
   double rise_rate_fall_per_s = 0.0;
   double rise_rate_fall_length_m = 1.0;
+  double blocking_time_s = 60.0;  ///< for which nothing ends an emergency; afterwards a release does
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -54,8 +59,20 @@ struct EmergencyApplicationParams {
     v.Number("rise_rate_per_s", rise_rate_per_s, kPositive);
     v.Number("rise_rate_fall_per_s", rise_rate_fall_per_s, kNonNegative);
     v.Number("rise_rate_fall_length_m", rise_rate_fall_length_m, kPositive);
+    v.Number("blocking_time_s", blocking_time_s, kNonNegative);
+    v.Check(rise_rate_fall_per_s < rise_rate_per_s, "rise_rate_fall_per_s", "must be below rise_rate_per_s",
+            {"rise_rate_per_s"});
   }
 };
+
+/// Rise rate of an emergency's pressure [1/s] at the distance d >= 0 [m] from the source that vents there:
+///
+///   beta(d) = b0 - k d                       up to L = rise_rate_fall_length_m
+///   beta(d) = b1 / (1 + k (d - L) / b1)      beyond it
+///
+/// b0 = rise_rate_per_s, k = rise_rate_fall_per_s / L, b1 = b0 - k L > 0. Once differentiable, positive and falling at
+/// any distance; what lies beyond L is an assumption [A].
+double EmergencyRiseRate(const EmergencyApplicationParams& params, double distance_m);
 
 struct ReleaseParams {
   double wave_speed_mps = kRequired;
@@ -90,41 +107,28 @@ struct BrakeSourceParams {
 
 /// A conventional automatic air brake, as an empirical model over measured data.
 struct AirBrakeParams {
-  std::string name;
   std::vector<BrakeSourceParams> sources;
   ServiceApplicationParams service;
   EmergencyApplicationParams emergency;
   ReleaseParams release;
+  /// Whether a smaller total reduction lets the cylinders down to its pressure; else it releases them fully.
+  bool graduated_release = false;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
     v.List("sources", sources);
     v.Group("service", service);
     v.Group("emergency", emergency);
     v.Group("release", release);
+    v.Flag("graduated_release", graduated_release);
     v.Check(!sources.empty(), "sources", "must list at least one source");
     v.Check(sources.size() <= 100, "sources", "must list at most 100 sources");
   }
-};
 
-enum class BrakeCommandKind { kApply, kEmergency, kRelease };
-
-/// What the driver does with the brake, and when.
-struct BrakeCommand {
-  double time_s = kRequired;
-  BrakeCommandKind kind = BrakeCommandKind::kApply;
-  double reduction_kpa = kRequired;  ///< of the pipe in total, for kApply only
-
-  template <class Visitor>
-  void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
-    v.Choice("kind", kind,
-             {{"apply", BrakeCommandKind::kApply},
-              {"emergency", BrakeCommandKind::kEmergency},
-              {"release", BrakeCommandKind::kRelease}});
-    if (kind == BrakeCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
-  }
+  /// What commands break in a train of so many vehicles, by the keys of a scenario.
+  std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  /// Commands without effect, and applications that this model gives too much pressure.
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands) const;
 };
 
 /// Every vehicle's cylinder as phases, in each of which its pressure tends to a target:
@@ -172,27 +176,41 @@ T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
 
 /// Cylinder pressures of a train under a list of driver commands (paper Eq 2).
 ///
-/// A command reaches vehicle i when the first wave does:
+/// What a command does depends on those before it:
 ///
-///   t_d,i = t_command + min over sources (delay of the source + distance / wave speed)
+///   at one time            the strongest holds: emergency, the larger reduction, the smaller one, release
+///   emergency              holds until a release that comes blocking_time_s or more after it
+///   a larger reduction     an application
+///   an equal reduction     nothing
+///   a smaller reduction    a rise of the pipe's pressure: a release, full or graduated (graduated_release)
 ///
-/// From then on, with p_m the pressure at that moment,
+/// A command that does something reaches vehicle i when the first wave does (t_d,i of FirstWave in brake/brake_wave.h;
+/// releases and smaller reductions start at the sources that release). From then on, with p_m the pressure at that
+/// moment,
 ///
-///   application: p = p_m + (p_s - p_m)(1 - exp(-beta (t - t_d,i))),  limited to [p_m, p_s]
-///   release:     p = p_m exp(-beta_r (t - t_d,i))
+///   application:        p = p_m + (p_s - p_m)(1 - exp(-beta (t - t_d,i))),  limited to [p_m, p_s]
+///   full release:       p = p_m exp(-beta_r (t - t_d,i))
+///   graduated release:  p = p_s + (p_m - p_s) exp(-beta_r (t - t_d,i)); while p_m < p_s the application to p_s
 ///
 /// A later command overtakes an earlier one where its wave is faster: a vehicle obeys the newest command that
-/// has reached it. Distances are between vehicle centres on the unstretched train. Stateless: any time may be
+/// has reached it. Distances are between vehicle centres on the unstretched train. Stateless in time: any time may be
 /// asked for.
+///
+/// Left out: reservoirs. An application after a release has the pressure of a fully charged train; a real one has
+/// less (Warnings says so).
 class AirBrake {
  public:
   /// @param vehicle_positions_m  centre of each vehicle on the unstretched train, any origin, front to rear
   /// @throws std::invalid_argument if a source stands outside the train, a reduction lies outside the measured
-  ///         range, times do not ascend, or an emergency rise rate falls to zero within the train.
+  ///         range, times do not ascend, or no source releases where a command demands it.
   AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
            const std::vector<double>& vehicle_positions_m);
 
-  int vehicles() const { return vehicles_; }
+  int vehicles() const { return static_cast<int>(positions_m_.size()); }
+
+  /// The brake pipe opens between vehicles `connection` and `connection` + 1, from 0: an emergency from there to both
+  /// sides, which no command ends. Where an emergency holds already it goes on, for good.
+  void OpenPipe(double time_s, int connection);
 
   /// What the pressures are made of; the stride is a multiple of 8.
   BrakePhases Phases() const;
@@ -201,7 +219,20 @@ class AirBrake {
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) const;
 
  private:
-  int vehicles_, stride_;
+  /// The pressure from `begin_s` on tends from `begin_pa` to `target_pa`.
+  struct Phase {
+    double begin_s, begin_pa, target_pa, rate_per_s;
+    bool emergency;
+
+    double PressureAt(double time_s) const;
+  };
+  /// Puts the phases side by side.
+  void Arrange();
+
+  EmergencyApplicationParams emergency_;
+  std::vector<double> positions_m_;
+  std::vector<std::vector<Phase>> vehicle_phases_;  ///< [vehicle][phase]
+  int stride_ = 0;
   std::vector<double> begin_s_, begin_pa_, target_pa_, rate_per_s_;  ///< [phase][vehicle]
 };
 

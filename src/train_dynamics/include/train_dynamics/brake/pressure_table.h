@@ -21,6 +21,13 @@ class PressureTable {
   /// Cylinder pressure of each vehicle [Pa] at a time; resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) const;
 
+  /// Measured pressures do not answer.
+  void OpenPipe(double /*time_s*/, int /*connection*/) {}
+
+  /// There is no state.
+  template <class Function>
+  void ForEachField(Function&& /*field*/) {}
+
  private:
   std::vector<double> time_s_;
   std::vector<std::vector<double>> pressure_pa_;

@@ -14,7 +14,7 @@ namespace train_dynamics::config {
 struct LoadedScenario {
   ScenarioParams params;
   Consist consist;
-  PressureSource pressures;
+  BrakeSystem pressures;
   std::vector<std::string> warnings;           ///< see Warnings(); "file:line: sentence"
   std::vector<std::filesystem::path> files{};  ///< all that were read
   /// Largest stable dt_s of each kind of vehicle, by its name [s]; 2D model only.

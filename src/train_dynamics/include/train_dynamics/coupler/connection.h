@@ -1,57 +1,89 @@
 #pragma once
 
 #include <string>
+#include <variant>
 
-#include "train_dynamics/coupler/draft_gear.h"
+#include "train_dynamics/coupler/damped_stick_gear.h"
 #include "train_dynamics/coupler/draw_bar.h"
+#include "train_dynamics/coupler/lugre_gear.h"
+#include "train_dynamics/coupler/side_buffers.h"
+#include "train_dynamics/coupler/smooth_gear.h"
+#include "train_dynamics/coupler/stick_spring_gear.h"
+#include "train_dynamics/coupler/table_gear.h"
+#include "train_dynamics/coupler/unequal_gears.h"
 
 namespace train_dynamics {
 
-enum class ConnectionKind { kDraftGears, kDrawBar };
+/// The closed set of laws of the force between two vehicles; see connection_law.h. Chosen once per set of equal
+/// connections, never per connection.
+template <template <class...> class Of>
+using OfConnectionLaws =
+    Of<DrawBar, SmoothGears, StickSpringGears, DampedStickGears, LuGreGears, TableGear,
+       UnequalGears<FrictionDevice, FrictionDevice>, UnequalGears<FrictionDevice, TableDevice>,
+       UnequalGears<TableDevice, TableDevice>, SideBuffers>;
 
-/// What joins two neighbouring vehicles; exactly one of the two devices is used.
+using ConnectionLaw = OfConnectionLaws<std::variant>;
+
+enum class ConnectionKind { kDraftGears, kDrawBar, kTable, kUnequalGears, kSideBuffers };
+
+/// What joins two neighbouring vehicles; exactly one of the devices is used.
 struct ConnectionParams {
   std::string name;
   ConnectionKind kind = ConnectionKind::kDraftGears;
+  /// Tension beyond which the connection breaks: from then on it carries no tension, and the brake pipe is open there.
+  /// 0: it never does.
+  double strength_n = 0.0;
   DraftGearParams draft_gear;
   DrawBarParams draw_bar;
+  TableGearParams table;
+  UnequalGearsParams unequal_gears;
+  SideBuffersParams side_buffers;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name);
     v.Choice("kind", kind,
-             {{"draft_gears", ConnectionKind::kDraftGears}, {"draw_bar", ConnectionKind::kDrawBar}});
+             {{"draft_gears", ConnectionKind::kDraftGears},
+              {"draw_bar", ConnectionKind::kDrawBar},
+              {"table", ConnectionKind::kTable},
+              {"unequal_gears", ConnectionKind::kUnequalGears},
+              {"side_buffers", ConnectionKind::kSideBuffers}});
+    v.Number("strength_n", strength_n, kNonNegative);
     if (kind == ConnectionKind::kDraftGears) v.Group("draft_gear", draft_gear);
     if (kind == ConnectionKind::kDrawBar) v.Group("draw_bar", draw_bar);
+    if (kind == ConnectionKind::kTable) v.Group("table", table);
+    if (kind == ConnectionKind::kUnequalGears) v.Group("unequal_gears", unequal_gears);
+    if (kind == ConnectionKind::kSideBuffers) v.Group("side_buffers", side_buffers);
   }
+
+  /// The law that these parameters describe.
+  ConnectionLaw Law() const;
 };
 
-/// What is constant in a connection.
-struct Connection {
-  explicit Connection(const ConnectionParams& params)
-      : kind(params.kind), bar(params.draw_bar), gear(params.draft_gear) {}
-  ConnectionKind kind;
-  DrawBarParams bar;
-  DraftGear gear;  ///< unused in a draw-bar
-};
-
-/// Force of a draw-bar [N], tension positive, at its extension q [m] and rate [m/s].
-template <class T>
-GearForce<T> DrawBarForce(const DrawBarParams& bar, T q, T q_rate) {
-  const T elastic = bar.stiffness_n_per_m * q;
-  return {elastic + bar.damping_ns_per_m * q_rate, elastic};
+inline ConnectionLaw ConnectionParams::Law() const {
+  switch (kind) {
+    case ConnectionKind::kDrawBar:
+      return DrawBar(draw_bar);
+    case ConnectionKind::kTable:
+      return TableGear(table);
+    case ConnectionKind::kUnequalGears:
+      return UnequalGearsOf<ConnectionLaw>(unequal_gears);
+    case ConnectionKind::kSideBuffers:
+      return SideBuffers(side_buffers);
+    default:
+      break;
+  }
+  switch (draft_gear.friction) {
+    case DraftGearFriction::kStickSpring:
+      return StickSpringGears(draft_gear);
+    case DraftGearFriction::kDampedStick:
+      return DampedStickGears(draft_gear);
+    case DraftGearFriction::kLuGre:
+      return LuGreGears(draft_gear);
+    default:
+      return SmoothGears(draft_gear);
+  }
 }
-
-/// Connections of one type, side by side: one number each, in arrays.
-struct ConnectionArrays {
-  const double* rate_mps;                      ///< of the extension
-  double* extension_m;                         ///< at the last exchange
-  double *force_n, *elastic_n;                 ///< tension positive
-  double *stick_m, *stick_n;                   ///< StickState
-  double *tension_n, *tension_time_s;          ///< the largest so far, and when
-  double *compression_n, *compression_time_s;  ///< the same, <= 0
-  double* dissipated_j;                        ///< so far
-};
 
 /// Where in the slack of its connections a train starts.
 enum class SlackState { kStretched, kMiddle, kBunched };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "train_dynamics/coupler/connection_law.h"
 #include "train_dynamics/numeric/elementary.h"
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/parameters.h"
@@ -10,55 +11,78 @@ namespace train_dynamics {
 enum class DraftGearFriction {
   kSmooth,       ///< mu ~ tanh(w / v_e): a function of the present rate only
   kStickSpring,  ///< the force moves along a stiff spring between the unloading and the loading branch
+  kDampedStick,  ///< likewise, mu the same at any speed, and damped: the default for real trains
+  kLuGre,        ///< mu follows the sliding over a length: a study
 };
 
-/// Two equal friction draft gears in series with the slack of one coupler connection.
+/// A friction draft gear, two equal ones of which stand in series with the slack of one coupler connection.
 struct DraftGearParams {
   double slack_m = kRequired;                       ///< total free play of the connection
   double preload_n = kRequired;                     ///< F_0
   double preload_travel_m = 0.001;                  ///< travel over which the preload builds up
   double spring_stiffness_n_per_m = kRequired;      ///< k_s of one gear
+  double spring_hardening_n_per_m3 = 0.0;           ///< k_3 of one gear
   double travel_m = kRequired;                      ///< d_max of one gear
   double solid_stiffness_n_per_m = kRequired;       ///< of the stop of one gear beyond d_max
   double wedge_angle_deg = kRequired;               ///< phi
   double static_friction_coefficient = kRequired;   ///< mu_s
   double kinetic_friction_coefficient = kRequired;  ///< mu_k
-  double stribeck_speed_mps = kRequired;            ///< v_s, of one gear's travel
+  double stribeck_speed_mps = kRequired;            ///< v_s, of one gear's travel; not damped_stick
   DraftGearFriction friction = DraftGearFriction::kSmooth;
-  double smoothing_speed_mps = kRequired;  ///< v_e, of one gear's travel; smooth friction
-  double stick_stiffness_n_per_m = 1.0e9;  ///< of the connection while it sticks; stick_spring friction
+  double smoothing_speed_mps = kRequired;       ///< v_e, of one gear's travel; smooth friction
+  double stick_stiffness_n_per_m = 1.0e9;       ///< of the connection while it sticks; stick_spring friction
+  double gear_stick_stiffness_n_per_m = 1.0e9;  ///< k_st of one gear while it sticks; damped_stick friction
+  double gear_stick_damping_ns_per_m = 2.6e6;   ///< c_st likewise
+  double friction_length_m = 0.105e-3;          ///< ell, of one gear's travel; lugre friction
 
   template <class Visitor>
   void Visit(Visitor& v) {
+    v.Choice("friction", friction,
+             {{"smooth", DraftGearFriction::kSmooth},
+              {"stick_spring", DraftGearFriction::kStickSpring},
+              {"damped_stick", DraftGearFriction::kDampedStick},
+              {"lugre", DraftGearFriction::kLuGre}});
+    const bool damped_stick = friction == DraftGearFriction::kDampedStick;
+    if (friction != DraftGearFriction::kSmooth) NotRequired(smoothing_speed_mps);
+    if (damped_stick) NotRequired(stribeck_speed_mps);
     v.Number("slack_m", slack_m, kNonNegative);
     v.Number("preload_n", preload_n, kNonNegative);
     v.Number("preload_travel_m", preload_travel_m, kPositive);
     v.Number("spring_stiffness_n_per_m", spring_stiffness_n_per_m, kPositive);
+    v.Number("spring_hardening_n_per_m3", spring_hardening_n_per_m3, kNonNegative);
     v.Number("travel_m", travel_m, kPositive);
     v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
     v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0});
     v.Number("static_friction_coefficient", static_friction_coefficient, kNonNegative);
     v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, kNonNegative);
     v.Number("stribeck_speed_mps", stribeck_speed_mps, kPositive);
-    v.Choice("friction", friction,
-             {{"smooth", DraftGearFriction::kSmooth}, {"stick_spring", DraftGearFriction::kStickSpring}});
     v.Number("smoothing_speed_mps", smoothing_speed_mps, kPositive);
     v.Number("stick_stiffness_n_per_m", stick_stiffness_n_per_m, kPositive);
+    v.Number("gear_stick_stiffness_n_per_m", gear_stick_stiffness_n_per_m, kPositive);
+    v.Number("gear_stick_damping_ns_per_m", gear_stick_damping_ns_per_m, kNonNegative);
+    v.Number("friction_length_m", friction_length_m, kPositive);
     v.Check(kinetic_friction_coefficient <= static_friction_coefficient, "kinetic_friction_coefficient",
             "must be at most static_friction_coefficient");
     v.Check(static_friction_coefficient < TanWedge(), "static_friction_coefficient",
             "must be below the tangent of wedge_angle_deg: the gear would lock itself");
+    v.Check(!damped_stick || kinetic_friction_coefficient == static_friction_coefficient,
+            "kinetic_friction_coefficient",
+            "must equal static_friction_coefficient for friction damped_stick");
+    v.Check(!damped_stick || gear_stick_stiffness_n_per_m > SteepestLoading(), "gear_stick_stiffness_n_per_m",
+            "must exceed the steepest slope of the loading branch, " + ShortestDecimal(SteepestLoading()) +
+                " N/m");
   }
 
   /// tan(phi) [-].
   double TanWedge() const;
-};
+  /// The steepest slope of F_s t / (t - mu_s) over the travel [N/m].
+  double SteepestLoading() const;
 
-/// Force of a connection [N] and the elastic part of it; both tension positive.
-template <class T>
-struct GearForce {
-  T force;
-  T elastic;
+ private:
+  /// A number that the chosen friction does not use need not be given.
+  static void NotRequired(double& value) {
+    if (value != value) value = 1.0;
+  }
 };
 
 /// What is constant in a connection of two draft gears.
@@ -77,10 +101,31 @@ T GearFrictionCoefficient(const DraftGearParams& p, T speed) {
                                               Exp(Abs(speed) * (-1.0 / p.stribeck_speed_mps));
 }
 
-/// Spring force of one gear [N] at its travel d >= 0, without the solid stop: F_0 min(d / d_0, 1) + k_s d.
+/// Spring force of one gear [N] at its travel d >= 0, without the solid stop:
+///
+///   F_s = F_0 min(d / d_0, 1) + k_s d + k_3 d^3
 template <class T>
 T GearSpringForce(const DraftGearParams& p, T travel) {
-  return p.preload_n * Min(T(1.0), travel * (1.0 / p.preload_travel_m)) + p.spring_stiffness_n_per_m * travel;
+  const T linear =
+      p.preload_n * Min(T(1.0), travel * (1.0 / p.preload_travel_m)) + p.spring_stiffness_n_per_m * travel;
+  if (p.spring_hardening_n_per_m3 == 0.0) return linear;
+  return linear + p.spring_hardening_n_per_m3 * travel * travel * travel;
+}
+
+/// Its slope [N/m].
+template <class T>
+T GearSpringSlope(const DraftGearParams& p, T travel) {
+  const T preload = Select(travel < p.preload_travel_m, T(p.preload_n / p.preload_travel_m), T(0.0));
+  return preload + p.spring_stiffness_n_per_m + 3.0 * p.spring_hardening_n_per_m3 * travel * travel;
+}
+
+/// Its integral from 0 [J].
+template <class T>
+T GearSpringEnergy(const DraftGearParams& p, T travel) {
+  const T ramp = Min(T(p.preload_travel_m), travel);
+  const T square = travel * travel;
+  return p.preload_n * (0.5 * ramp * ramp * (1.0 / p.preload_travel_m) + (travel - ramp)) +
+         0.5 * p.spring_stiffness_n_per_m * square + 0.25 * p.spring_hardening_n_per_m3 * square * square;
 }
 
 /// Force of the solid stop of one gear [N].
@@ -95,69 +140,12 @@ T GearTravel(const DraftGearParams& p, T q) {
   return 0.5 * Max(T(0.0), Abs(q) - 0.5 * p.slack_m);
 }
 
-/// Force of a connection with smooth friction (paper Eq 4).
-///
-///   e = max(|q| - slack/2, 0),  d = e/2,  w = sign(q) q'/2
-///   F = sign(q) [ F_s(d) tan(phi) / (tan(phi) - mu(w) tanh(w / v_e)) + F_stop(d) ]
-///
-/// Loading (w > 0) gives a larger force than the spring's, unloading a smaller one, so that (F - F_elastic)
-/// q' >= 0: the gear only dissipates. Continuous in q and q'; it has no true stick: a standing connection
-/// settles at its spring force. v_e must stay above 2 F_s mu_s dt / (tan(phi) m), about 9 mm/s at 900 kN, 1
-/// ms and 160 t.
-///
-/// @param q       extension relative to the unstretched length [m], tension positive; the slack is +-slack/2
-/// @param q_rate  its rate [m/s]
-template <class T>
-GearForce<T> SmoothGearForce(const DraftGear& gear, T q, T q_rate) {
-  const DraftGearParams& p = gear.params;
-  const T travel = GearTravel(p, q);
-  const T rate = CopySign(T(0.5), q) * q_rate;
-  const T spring = GearSpringForce(p, travel);
-  const T mu = GearFrictionCoefficient(p, rate) * Tanh(rate * (1.0 / p.smoothing_speed_mps));
-  const T stop = GearStopForce(p, travel);
-  const T with_friction = spring * gear.tan_wedge / (gear.tan_wedge - mu);
-  return {CopySign(with_friction + stop, q), CopySign(spring + stop, q)};
-}
-
-/// Memory of a connection with stick-spring friction.
-template <class T>
-struct StickState {
-  T q;      ///< extension at the last evaluation [m]
-  T force;  ///< force at the last evaluation, solid stop left out [N], tension positive
-};
-
-/// Force of a connection whose friction sticks: rate-independent in direction, with memory.
-///
-///   F_n = clamp(F_(n-1) + k_stick (q_n - q_(n-1)), unloading branch, loading branch)
-///   branches: F_s tan(phi) / (tan(phi) +- mu),  mu = mu_k + (mu_s - mu_k) exp(-|w| / v_s)
-///
-/// With mu_s = mu_k the path of the force depends on the path of q alone, not on its speed. With a steep drop
-/// from static to kinetic friction a long train becomes CHAOTIC: a start speed changed by 1e-10 km/h moves
-/// later peaks by tens of kN. Study such trains statistically and never compare them point by point.
-template <class T>
-GearForce<T> StickSpringGearForce(const DraftGear& gear, T q, T q_rate, StickState<T>& state) {
-  const DraftGearParams& p = gear.params;
-  const T travel = GearTravel(p, q);
-  const T spring = GearSpringForce(p, travel);
-  const T mu = GearFrictionCoefficient(p, T(0.5) * q_rate);
-  const T loading = spring * gear.tan_wedge / (gear.tan_wedge - mu);
-  const T unloading = spring * gear.tan_wedge / (gear.tan_wedge + mu);
-  const T lower = Select(q < T(0.0), -loading, unloading);
-  const T upper = Select(q < T(0.0), -unloading, loading);
-  state.force = Clamp(state.force + p.stick_stiffness_n_per_m * (q - state.q), lower, upper);
-  state.q = q;
-  const T stop = GearStopForce(p, travel);
-  return {state.force + CopySign(stop, q), CopySign(spring + stop, q)};
-}
-
 /// Elastic energy of a connection's two gears [J]: 2 times the integral of F_s + F_stop over d.
 template <class T>
 T GearEnergy(const DraftGearParams& p, T q) {
   const T d = GearTravel(p, q);
-  const T ramp = Min(T(p.preload_travel_m), d);
   const T stop = Max(T(0.0), d - p.travel_m);
-  return 2.0 * (p.preload_n * (0.5 * ramp * ramp * (1.0 / p.preload_travel_m) + (d - ramp)) +
-                0.5 * p.spring_stiffness_n_per_m * d * d + 0.5 * p.solid_stiffness_n_per_m * stop * stop);
+  return 2.0 * (GearSpringEnergy(p, d) + 0.5 * p.solid_stiffness_n_per_m * stop * stop);
 }
 
 }  // namespace train_dynamics

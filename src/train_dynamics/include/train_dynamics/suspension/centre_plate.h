@@ -1,7 +1,7 @@
 #pragma once
 
-#include "train_dynamics/contact/normal_contact.h"
 #include "train_dynamics/parameters.h"
+#include "train_dynamics/spring/one_sided_spring.h"
 
 namespace train_dynamics {
 

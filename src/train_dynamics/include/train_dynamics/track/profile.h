@@ -21,11 +21,12 @@ struct DipParams {
 };
 
 /// Height of the rail above its nominal line [m] and its slope [-].
+template <class T>
 struct RailHeight {
-  double height, slope;
+  T height, slope;
 };
 
 /// Rail height of one dip at a position along the track; continuous with its slope at both ends.
-RailHeight DipHeight(const DipParams& dip, double position_m);
+RailHeight<double> DipHeight(const DipParams& dip, double position_m);
 
 }  // namespace train_dynamics

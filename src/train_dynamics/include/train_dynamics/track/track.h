@@ -3,14 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/contact/polach.h"
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/track/friction_map.h"
 #include "train_dynamics/track/grade.h"
+#include "train_dynamics/track/pieces.h"
 #include "train_dynamics/track/profile.h"
 
 namespace train_dynamics {
 
-/// The track as functions of the position along it [m].
+/// The track as a configuration describes it, by position along it [m].
 struct TrackParams {
   std::string name;
   std::vector<GradeParams> grades;                    ///< empty = level
@@ -23,48 +25,169 @@ struct TrackParams {
     v.List("grades", grades);
     v.List("dips", dips);
     v.List("friction_patches", friction_patches);
-    v.Check(GradesAscend(), "grades", "must ascend in from_m");
+    for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, {rule.list});
   }
 
  private:
-  bool GradesAscend() const;
+  /// A rule between the entries of a list that does not hold, as Check takes it.
+  struct BrokenRule {
+    std::string key, text;
+    const char* list;
+  };
+
+  std::vector<BrokenRule> BrokenRules() const;
+  void JudgeGrades(std::vector<BrokenRule>& broken) const;
+  void JudgeDips(std::vector<BrokenRule>& broken) const;
+  void JudgeRamps(std::vector<BrokenRule>& broken) const;
+};
+
+/// The track made ready for wheels that ask what is under them; constant.
+///
+/// Each quantity has pieces of its own (track/pieces.h) and a value for each. Vehicles side by side ask once as long as
+/// they are on the same piece. A surface that changes while the train runs (water, cleaning, sand) has its place in
+/// SurfaceFrom and SurfaceAt: they give mu0 and the rest for a position, and need only be given the state of its cell.
+class Track {
+ public:
+  /// Not explicit: a track is its parameters.
+  /// @throws std::invalid_argument when the parameters violate their rules
+  Track(const TrackParams& params = {});
+
+  bool has_dips = false;
+  bool has_patches = false;
+
+  /// A constant grade [-], rise over run, and where it holds.
+  struct GradeStretch {
+    Stretch on;
+    double grade;
+  };
+  GradeStretch GradeFrom(double position_m) const;
+  void GradesAt(int count, const double* position_m, double* grade) const;
+
+  /// The stretch around a position that no dip touches; an empty one within a dip.
+  Stretch FlatFrom(double position_m) const;
+  RailHeight<double> HeightAt(double position_m) const;
+  void HeightsAt(int count, const double* position_m, double* height, double* slope) const;
+
+  /// A surface that does not change, and where it holds: an empty stretch within a ramp.
+  struct SurfaceStretch {
+    Stretch on;
+    double friction;                 ///< mu0
+    const AdhesionParams* adhesion;  ///< holds A, B, kA, kS
+  };
+  SurfaceStretch SurfaceFrom(double position_m, const AdhesionParams& vehicle) const;
+  AdhesionParams SurfaceAt(double position_m, const AdhesionParams& vehicle) const;
+  /// @param values  [5][count] mu0, A, B, kA, kS
+  /// @return what holds A, B, kA, kS at all positions, or null when they differ
+  const AdhesionParams* SurfacesAt(int count, const double* position_m, const AdhesionParams& vehicle,
+                                   double* values) const;
+
+ private:
+  /// What a piece of track has of the patches: one surface, or a ramp between two. Indices of patches; -1: the vehicle's
+  /// own surface.
+  struct SurfacePiece {
+    int before, behind;
+  };
+
+  void SetGrades(const std::vector<GradeParams>& grades);
+  void SetDips();
+  void SetPatches();
+  AdhesionParams SurfaceOf(int patch, const AdhesionParams& vehicle) const;
+  const AdhesionParams* ShapeOf(const SurfacePiece& piece, const AdhesionParams& vehicle) const;
+
+  Pieces grade_pieces_;
+  std::vector<double> grades_;  ///< [piece]
+  std::vector<DipParams> dips_;
+  Pieces dip_pieces_;
+  std::vector<int>
+      dips_before_;  ///< [piece] the number of entries of dips_by_piece_ before its own; one more at the end
+  std::vector<int> dips_by_piece_;  ///< indices of the dips that touch a piece, ascending
+  std::vector<FrictionPatchParams> patches_;
+  Pieces surface_pieces_;
+  std::vector<SurfacePiece> surfaces_;  ///< [piece]
 };
 
 /// Grade [-], rise over run, uphill positive: the longitudinal force on a vehicle is -m g grade.
-double GradeAt(const TrackParams& track, double position_m);
+double GradeAt(const Track& track, double position_m);
 
 /// Height and slope of the rail under a wheel, from the dips.
-RailHeight RailHeightAt(const TrackParams& track, double position_m);
+RailHeight<double> RailHeightAt(const Track& track, double position_m);
 
-/// mu0 under a wheel: that of the patch, or the vehicle's own outside of every patch.
-double FrictionAt(const TrackParams& track, double position_m, double vehicle_friction);
-
-/// What a wheel meets at its position: rail height [m], slope [-] and mu0 [-].
+/// The rail's surface under a wheel, or under several side by side.
 template <class T>
-struct RailPoint {
-  T height, slope, friction;
+struct RailSurface {
+  T friction;                      ///< mu0 [-]
+  const AdhesionParams* adhesion;  ///< holds A, B, kA and kS for all lanes; null: they are in `by_lane`
+  CreepShape<T> by_lane;
 };
+
+/// What the creep law takes from a surface beside mu0, lane by lane.
+template <class T>
+CreepShape<T> ShapeOf(const RailSurface<T>& surface) {
+  if (surface.adhesion == nullptr) return surface.by_lane;
+  const AdhesionParams& p = *surface.adhesion;
+  return {T(p.friction_ratio), T(p.friction_decay_s_per_m), T(p.adhesion_reduction), T(p.slip_reduction)};
+}
+
+template <class T>
+double FirstLane(const T& x) {
+  if constexpr (kLanesOf<T> == 1) {
+    return x;
+  } else {
+    return x[0];
+  }
+}
+
+/// Whether all lanes are on a stretch.
+template <class T>
+bool AllOn(const Stretch& stretch, const T& position_m) {
+  return AllOf((position_m >= T(stretch.from_m)) & (position_m < T(stretch.to_m)));
+}
 
 /// GradeAt for one vehicle or for several side by side.
 template <class T>
-T GradeUnder(const TrackParams& track, T position_m) {
-  if (track.grades.empty()) return T(0.0);
-  if (track.grades.size() == 1) return T(0.01 * track.grades.front().grade_percent);
-  return MapLanes([&track](double x) { return GradeAt(track, x); }, position_m);
+T GradeUnder(const Track& track, const T& position_m) {
+  const Track::GradeStretch first = track.GradeFrom(FirstLane(position_m));
+  if (AllOn(first.on, position_m)) return T(first.grade);
+  constexpr int kLanes = kLanesOf<T>;
+  double at[kLanes], grade[kLanes];
+  Store(position_m, at);
+  track.GradesAt(kLanes, at, grade);
+  return Load<T>(grade);
 }
 
-/// The rail under one wheel, or under several side by side.
+/// RailHeightAt for one wheel, or for several side by side.
 template <class T>
-RailPoint<T> RailUnder(const TrackParams& track, T position_m, double vehicle_friction) {
-  RailPoint<T> rail{T(0.0), T(0.0), T(vehicle_friction)};
-  if (!track.dips.empty()) {
-    rail.height = MapLanes([&track](double x) { return RailHeightAt(track, x).height; }, position_m);
-    rail.slope = MapLanes([&track](double x) { return RailHeightAt(track, x).slope; }, position_m);
+RailHeight<T> RailHeightUnder(const Track& track, const T& position_m) {
+  if (!track.has_dips || AllOn(track.FlatFrom(FirstLane(position_m)), position_m)) return {T(0.0), T(0.0)};
+  constexpr int kLanes = kLanesOf<T>;
+  double at[kLanes], height[kLanes], slope[kLanes];
+  Store(position_m, at);
+  track.HeightsAt(kLanes, at, height, slope);
+  return {Load<T>(height), Load<T>(slope)};
+}
+
+/// The surface under one wheel of a vehicle, or under those of several equal vehicles side by side.
+/// @param vehicle  the vehicle's own surface, outside of every patch; must outlive what is returned
+template <class T>
+RailSurface<T> RailSurfaceUnder(const Track& track, const T& position_m, const AdhesionParams& vehicle) {
+  RailSurface<T> surface;
+  surface.friction = T(vehicle.friction_coefficient);
+  surface.adhesion = &vehicle;
+  if (!track.has_patches) return surface;
+  const Track::SurfaceStretch first = track.SurfaceFrom(FirstLane(position_m), vehicle);
+  if (AllOn(first.on, position_m)) {
+    surface.friction = T(first.friction);
+    surface.adhesion = first.adhesion;
+    return surface;
   }
-  if (!track.friction_patches.empty()) {
-    rail.friction = MapLanes([&](double x) { return FrictionAt(track, x, vehicle_friction); }, position_m);
-  }
-  return rail;
+  constexpr int kLanes = kLanesOf<T>;
+  double at[kLanes], values[5 * kLanes];
+  Store(position_m, at);
+  surface.adhesion = track.SurfacesAt(kLanes, at, vehicle, values);
+  surface.friction = Load<T>(values);
+  surface.by_lane = {Load<T>(values + kLanes), Load<T>(values + 2 * kLanes), Load<T>(values + 3 * kLanes),
+                     Load<T>(values + 4 * kLanes)};
+  return surface;
 }
 
 }  // namespace train_dynamics

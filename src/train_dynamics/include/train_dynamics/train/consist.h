@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,12 +24,14 @@ struct ConsistGroupParams {
   int vehicles_per_unit = 1;                         ///< 2: pairs, as of draw-bar wagons
   ConnectionParams unit_connection;                  ///< within a unit
   std::optional<VehicleModel> model = std::nullopt;  ///< none: that of the scenario
+  bool locomotive = false;                           ///< the vehicles are locomotives: shown as such
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
     v.Choice("model", model, kVehicleModels);
     v.Integer("count", count, Range{1, 100000, false, false});
+    v.Flag("locomotive", locomotive);
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
@@ -48,7 +51,13 @@ struct TrainParams {
     v.Part("connection", connection, "couplers");
     v.List("consist", consist);
     v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
-    v.Check(VehicleCount() <= 100000, "consist", "must have at most 100000 vehicles in all", {"consist"});
+    long vehicles = 0;
+    for (std::size_t i = 0; i < consist.size(); ++i) {
+      const bool fitted = vehicles <= 100000;
+      vehicles += consist[i].count;
+      v.Check(!fitted || vehicles <= 100000, "consist[" + std::to_string(i) + "].count",
+              "makes the train too long: it must have at most 100000 vehicles in all", {"consist"});
+    }
   }
 
   int VehicleCount() const;
@@ -60,6 +69,7 @@ struct Consist {
 
   std::vector<VehicleParams> vehicle_types;  ///< one of each group, in their order
   std::vector<int> vehicle_type;             ///< [vehicle] index into vehicle_types and TrainParams::consist
+  std::vector<int> locomotives;              ///< indices of vehicles, ascending
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

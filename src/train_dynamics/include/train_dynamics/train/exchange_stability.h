@@ -16,19 +16,13 @@ namespace train_dynamics {
 ///
 ///   k H^2 + 2 c H < m
 ///
-///   draw-bar                      k and c as given
-///   draft gears, stick_spring     k while they stick
-///   draft gears, smooth friction  k = k_s / 2 of the two springs; c = F mu_s / (2 tan(phi) v_e), the slope of the
-///                                 friction where the gears stand under F = kLargeCouplerForce
+/// with k and c of the law's tangent at kLargeCouplerForce (TangentAt in coupler/*.h).
 ///
 /// The friction's slope falls as soon as the gears move, so what grows is bounded at first: whole trains broke down at 1
 /// to 1.8 times this interval (docs/validation.md). Left out: solid stops, different vehicles side by side.
 ///
 /// @param head_mass_kg  see CouplerHeadMass
 double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg);
-
-/// The largest force that smooth draft gears are judged by [N]: that of the paper's emergency brake.
-inline constexpr double kLargeCouplerForce = 900e3;
 
 /// The mass that a coupler head sets against a quick force [kg]: the vehicle's inertia in LTD; in the 2D model that of
 /// the carbody, which yields in x and in pitch: 1 / (1/m + h^2/I), h the head's height over its centre of gravity.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "train_dynamics/coupler/connection_kernels.h"
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/consist.h"
 
@@ -11,6 +12,12 @@ namespace train_dynamics {
 struct ForceExtremes {
   double tension_n = 0.0, tension_time_s = 0.0;          ///< >= 0
   double compression_n = 0.0, compression_time_s = 0.0;  ///< <= 0
+};
+
+/// A connection that broke.
+struct Parting {
+  int connection;  ///< from 0
+  double time_s;
 };
 
 /// Work that the connections have taken up [J].
@@ -50,9 +57,11 @@ class InTrainForces {
   int connections() const { return static_cast<int>(places_.size()); }
   /// [connection], from the front
   std::vector<ForceExtremes> Extremes() const;
+  /// The connections that broke so far, in the order of times, those of one time from the front.
+  std::vector<Parting> Partings() const;
   /// Extension of each connection at the last exchange [m].
   void Extensions(std::vector<double>& extension_m) const;
-  /// Adds the memory of stick-spring draft gears, which is part of the train's state.
+  /// Adds the memory of the laws, which is part of the train's state.
   void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
 
@@ -64,22 +73,33 @@ class InTrainForces {
  private:
   /// The connections of one type, side by side, filled up to whole packs of lanes.
   struct Set {
-    explicit Set(const ConnectionParams& params) : type(params) {}
-    void Resize(int padded);
+    explicit Set(const ConnectionParams& params) : law(params.Law()), strength_n(params.strength_n) {}
+    /// Puts all connections to this extension, without force.
+    void Begin(double extension_m);
+    int Padded() const { return static_cast<int>(rate_mps.size()); }
     ConnectionArrays Arrays();
 
-    Connection type;
+    /// Books the energy of connections that broke at a time.
+    void Part(double time_s);
+
+    ConnectionLaw law;
+    double strength_n;
     std::vector<int> place;  ///< [connection of the set] in the train
     std::vector<double> start_extension_m, next_extension_m;
-    std::vector<double> rate_mps, extension_m, force_n, elastic_n, stick_m, stick_n;
+    std::vector<double> rate_mps, extension_m, force_n, elastic_n;
+    std::vector<double> memory;  ///< of the law, [field][connection]
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
-    std::vector<double> dissipated_j;
+    std::vector<double> stored_j, dissipated_j;
+    std::vector<double> parted_s;  ///< < 0: has not
   };
   /// Where a connection of the train is.
   struct Place {
     int set, at;
   };
 
+  /// Calls function(number) for each number that the law of a connection remembers.
+  template <class OfSet, class Function>
+  static void ForEachField(OfSet& set, int at, Function& function);
   /// Calls function(number) for each number of the memory, connection by connection.
   template <class Self, class Function>
   static void ForEachMemory(Self& self, Function& function);

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/judgement.h"
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/train/consist.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 #include "train_dynamics/vehicle/vehicle_model.h"
+#include "train_dynamics/vehicle_number.h"
 
 namespace train_dynamics {
 
@@ -21,7 +23,7 @@ struct ScenarioParams {
   TrackParams track;
   std::string
       pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
-  std::optional<AirBrakeParams> brake;  ///< computes the pressures from the driver's commands
+  std::optional<BrakeSystemParams> brake;  ///< computes the pressures from the driver's commands
   std::vector<BrakeCommand> commands;
   double initial_speed_kmh = kRequired;
   double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
@@ -86,23 +88,11 @@ struct ScenarioParams {
   double InitialSpeed() const { return initial_speed_kmh / 3.6; }  ///< [m/s]
 
  private:
-  /// A rule between the parts of a scenario that does not hold, as Check takes it.
-  struct BrokenRule {
-    std::string key, text;
-    Keys reads;
-  };
-
   static bool Multiple(double whole, double part);
   std::vector<BrokenRule> BrokenRules() const;
   void JudgeTimes(std::vector<BrokenRule>& broken) const;
   void JudgeBrake(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;
-};
-
-/// Something that is allowed but most likely not meant, or beyond what was shown to work.
-struct Warning {
-  std::string key;   ///< its path in the configuration
-  std::string text;  ///< a sentence with numbers and remedy
 };
 
 /// The warnings about a scenario that keeps its rules.
@@ -115,8 +105,8 @@ struct Warning {
 /// Besides: parts of the scenario that its models, or its pressure table, leaves unused.
 std::vector<Warning> Warnings(const ScenarioParams& scenario);
 
-/// Index from 0 of a vehicle that is numbered from 1, or from -1 for the last; -1 if the train has no such
-/// vehicle.
-int VehicleIndex(int number, int vehicles);
+/// The brake system of a scenario that must have one.
+/// @throws std::invalid_argument if it does not suit the train
+BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist);
 
 }  // namespace train_dynamics

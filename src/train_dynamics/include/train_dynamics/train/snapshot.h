@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/byte_stream.h"
 
 namespace train_dynamics {
@@ -27,6 +28,7 @@ struct TrainCheckpoint {
   std::uint64_t state_digest = 0;   ///< chained over all records so far
   std::vector<StateRow> vehicles;   ///< [vehicle], see VehicleBlock::Save
   std::vector<double> connections;  ///< InTrainForces::Memory
+  std::vector<double> brake;        ///< BrakeSystem::ForEachField
   std::vector<double> summary;      ///< RunSummary::Memory
   Bytes output;                     ///< what the recorders of the run need to go on
 };
@@ -69,6 +71,16 @@ class MemoryReader {
  private:
   const std::vector<double>& numbers_;
   std::size_t at_ = 0;
+};
+
+/// Adds them to a digest. Keeps a reference.
+class MemoryDigest {
+ public:
+  explicit MemoryDigest(Digest& digest) : digest_(digest) {}
+  void operator()(double value) { digest_.Add(value); }
+
+ private:
+  Digest& digest_;
 };
 
 }  // namespace train_dynamics

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "train_dynamics/train/brake_pressures.h"
+#include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
@@ -38,7 +38,7 @@ class TrainMaster {
 
   /// Keeps references: scenario, consist and transport must outlive the master.
   TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
-              PressureSource pressures);
+              BrakeSystem brake);
 
   /// Called for every record, the one at time 0 included.
   void AddObserver(Observer observer) { observers_.push_back(std::move(observer)); }
@@ -70,11 +70,15 @@ class TrainMaster {
 
  private:
   void ShowRecord();
+  /// Tells the brake of connections that have broken since it was told last.
+  void OpenPipes();
 
   const ScenarioParams& scenario_;
   Transport& transport_;
-  PressureSource pressures_;
+  BrakeSystem brake_;
   InTrainForces forces_;
+  bool can_part_ = false;
+  std::size_t opened_pipes_ = 0;
   std::uint64_t exchange_ = 0, first_exchange_ = 0;
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;

@@ -77,7 +77,7 @@ struct LtdVehicle {
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
 /// @param output  receives what the step shows; may be null
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output = nullptr);
 
 /// Displacement of the coupler heads since the start [m]: the vehicle's own, which is rigid.
@@ -102,7 +102,7 @@ VehicleRecord<T> RecordOf(const LtdVehicle& /*vehicle*/, const LtdState<T>& s, c
 
 /// Whether the speed is one that a vehicle can have; false for anything that is not a number.
 template <class T>
-MaskOf<T> IsSound(const LtdState<T>& s) {
+MaskOf<T> IsSound(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const LtdState<T>& s) {
   return Abs(s.v_mps) < T(absurd::kSpeed);
 }
 
@@ -115,7 +115,7 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output) {
   const T v0 = s.v_mps;
   const double drift = vehicle.integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;

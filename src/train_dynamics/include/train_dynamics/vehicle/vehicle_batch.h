@@ -28,7 +28,7 @@ class VehicleBatch {
   /// Advances all vehicles by `steps` steps. @param loads, reply  of the first vehicle; those of the others follow
   /// @param with_output  keep what the last step shows
   /// @return whether all vehicles are sound
-  bool Advance(const TrackParams& track, double dt, int steps, const LoadPlaces& loads,
+  bool Advance(const Track& track, double dt, int steps, const LoadPlaces& loads,
                const ReplyPlaces& reply, bool with_output);
 
   /// What every vehicle replies, and what a record holds of it, after an Advance with output.

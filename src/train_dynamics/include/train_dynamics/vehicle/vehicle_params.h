@@ -7,9 +7,9 @@
 #include "train_dynamics/contact/normal_contact.h"
 #include "train_dynamics/contact/polach.h"
 #include "train_dynamics/resistance/propulsion.h"
+#include "train_dynamics/spring/linear_spring_damper.h"
 #include "train_dynamics/suspension/centre_plate.h"
 #include "train_dynamics/suspension/friction_wedge.h"
-#include "train_dynamics/suspension/linear_spring_damper.h"
 #include "train_dynamics/suspension/spring_nest.h"
 
 namespace train_dynamics {

@@ -272,14 +272,52 @@ VehicleRecord<T> RecordOf(const Wagon& /*wagon*/, const WagonState<T>& s, const 
   return record;
 }
 
-/// Whether every body is where and as fast as a body can be; false for anything that is not a number.
+/// Height and pitch of each body over the rail under it, from the state in which springs are unloaded.
 template <class T>
-MaskOf<T> IsSound(const WagonState<T>& s) {
+struct OverRail {
+  std::array<T, kBodies> z, pitch;
+};
+
+/// The rail under a wheelset is at its wheels; the rail under a bogie (its bolster and frame) is the line between those
+/// under its wheelsets, the rail under the carbody the line between the middles of those under its bogies. A pitch
+/// counts from the pitch of that line; that of a wheelset is its rotation and counts from nowhere.
+template <class T>
+OverRail<T> OverRailOf(const Wagon& w, const Track& track, const WagonState<T>& s) {
+  OverRail<T> over{s.position.z, s.position.pitch};
+  if (!track.has_dips) return over;
+  std::array<T, kWheelsets> rail;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const int b = kWheelset1 + i;
+    const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
+    rail[i] = RailHeightUnder(track, at).height;
+    over.z[b] = over.z[b] - rail[i];
+  }
+  std::array<T, kBogies> middle;
+  for (int b = 0; b < kBogies; ++b) {
+    const T front = rail[2 * b], rear = rail[2 * b + 1];
+    const T pitch = (rear - front) * (1.0 / (w.wheelset_offset_m[2 * b] - w.wheelset_offset_m[2 * b + 1]));
+    middle[b] = 0.5 * (front + rear);
+    for (const int body : {kFrontBolster + b, kFrontFrame + b}) {
+      over.z[body] = over.z[body] - middle[b];
+      over.pitch[body] = over.pitch[body] - pitch;
+    }
+  }
+  over.z[kCarbody] = over.z[kCarbody] - 0.5 * (middle[0] + middle[1]);
+  over.pitch[kCarbody] =
+      over.pitch[kCarbody] - (middle[1] - middle[0]) * (1.0 / (w.bogie_offset_m[0] - w.bogie_offset_m[1]));
+  return over;
+}
+
+/// Whether every body is where and as fast as a body can be; false for anything that is not a number. Heights and
+/// pitches count from the rail, so that a train in a deep, gentle valley is sound.
+template <class T>
+MaskOf<T> IsSound(const Wagon& w, const Track& track, const WagonState<T>& s) {
+  const OverRail<T> over = OverRailOf(w, track, s);
   MaskOf<T> sound = Abs(s.velocity.x[kCarbody]) < T(absurd::kSpeed);
   for (int b = 0; b < kBodies; ++b) {
     sound = sound & (Abs(s.velocity.x[b]) < T(absurd::kSpeed)) & (Abs(s.velocity.z[b]) < T(absurd::kSpeed)) &
-            (Abs(s.position.z[b]) < T(absurd::kMovement)) &
-            (b < kWheelset1 ? Abs(s.position.pitch[b]) < T(absurd::kPitch)
+            (Abs(over.z[b]) < T(absurd::kMovement)) &
+            (b < kWheelset1 ? Abs(over.pitch[b]) < T(absurd::kPitch)
                             : Abs(s.velocity.pitch[b]) < T(absurd::kRotation));
   }
   return sound;
@@ -289,6 +327,6 @@ MaskOf<T> IsSound(const WagonState<T>& s) {
 double KineticEnergy(const Wagon& wagon, const WagonState<double>& state);
 
 /// Elastic energy of all elements and contacts plus the bodies' weight times their height z [J].
-double PotentialEnergy(const Wagon& wagon, const TrackParams& track, const WagonState<double>& state);
+double PotentialEnergy(const Wagon& wagon, const Track& track, const WagonState<double>& state);
 
 }  // namespace train_dynamics

@@ -19,7 +19,7 @@ namespace train_dynamics {
 ///
 /// @param output  receives the step's contact and friction forces; may be null
 template <class T>
-void StepWagon(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void StepWagon(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
                WagonState<T>& s, WagonOutput<T>* output);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -37,27 +37,27 @@ void Drift(const BodyVector<T>& v, double h, BodyVector<T>& q) {
 /// Contact forces between the four wheelsets and the rail at the step's middle.
 template <class T>
 struct RailForces {
-  std::array<T, kWheelsets> normal{};    ///< N of both wheels [N]
-  std::array<T, kWheelsets> damping{};   ///< the part of N that is not elastic [N]
-  std::array<T, kWheelsets> slope{};     ///< of the rail [-]
-  std::array<T, kWheelsets> friction{};  ///< mu0 [-]
+  std::array<T, kWheelsets> normal{};   ///< N of both wheels [N]
+  std::array<T, kWheelsets> damping{};  ///< the part of N that is not elastic [N]
+  std::array<T, kWheelsets> slope{};    ///< of the rail [-]
+  std::array<RailSurface<T>, kWheelsets> surface;
 };
 
 template <class T>
-RailForces<T> ContactForces(const Wagon& w, const TrackParams& track, const WagonState<T>& s) {
+RailForces<T> ContactForces(const Wagon& w, const Track& track, const WagonState<T>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   RailForces<T> rail;
   for (int i = 0; i < kWheelsets; ++i) {
     const int b = kWheelset1 + i;
     const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
-    const RailPoint<T> point = RailUnder(track, at, w.params.wheel_rail.adhesion.friction_coefficient);
+    const RailHeight<T> point = RailHeightUnder(track, at);
     const T penetration = point.height - s.position.z[b];
     const T rate = point.slope * s.velocity.x[b] - s.velocity.z[b];
     rail.normal[i] =
         2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
     rail.damping[i] = rail.normal[i] - 2.0 * OneSidedForce(contact.stiffness_n_per_m, 0.0, penetration, rate);
     rail.slope[i] = point.slope;
-    rail.friction[i] = point.friction;
+    rail.surface[i] = RailSurfaceUnder(track, at, w.params.wheel_rail.adhesion);
   }
   return rail;
 }
@@ -124,7 +124,7 @@ struct OuterForces {
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
 template <class T>
-OuterForces<T> OuterForcesOn(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads,
+OuterForces<T> OuterForcesOn(const Wagon& w, const Track& track, const VehicleLoads<T>& loads,
                              const WagonState<T>& s) {
   const VehicleParams& p = w.params;
   const T speed = s.velocity.x[kCarbody];
@@ -159,6 +159,31 @@ struct WheelsetWork {
   T brake_path{}, traction_path{};  ///< way at the tread, times the share of the brake torque that acts [m]
 };
 
+/// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
+/// @param shape_of  what the law of a surface takes beside mu0: of one surface for all lanes, or by lane
+template <class T, class ShapeOf>
+std::array<RollingResult<T>, kWheelsets> RollOn(const Wagon& w, const RailForces<T>& rail,
+                                                const std::array<RollingInput<T>, kWheelsets>& rolling,
+                                                double dt, const BodyVector<T>& v0, const ShapeOf& shape_of) {
+  using Law = decltype(FreezeCreepLaw(shape_of(rail.surface[0]), 0.0, T(), T(), T(), 0.0));
+  std::array<Law, kWheelsets> law;
+  for (int i = 0; i < kWheelsets; ++i) {
+    const RailSurface<T>& surface = rail.surface[i];
+    law[i] = FreezeCreepLaw(shape_of(surface), w.creep_stiffness, rail.normal[i], surface.friction,
+                            v0.x[kWheelset1 + i], w.params.wheel_rail.creepage_regularisation_speed_mps);
+  }
+  return StepRolling(w.rolling, law, rolling, dt);
+}
+
+/// RollOn where vehicles side by side meet different surfaces. A function of its own, so that the step of all
+/// others does not grow.
+template <class T>
+[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsets> RollOnMixedSurfaces(
+    const Wagon& w, const RailForces<T>& rail, const std::array<RollingInput<T>, kWheelsets>& rolling,
+    double dt, const BodyVector<T>& v0) {
+  return RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) { return ShapeOf(surface); });
+}
+
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
 template <class T>
@@ -169,17 +194,20 @@ WheelsetWork<T> StepWheelsets(const Wagon& w, const RailForces<T>& rail, const O
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
   const T retarding = outer.shoes + outer.rolling + outer.dynamic_brake + outer.curving;
-  std::array<CreepLaw<T>, kWheelsets> law;
   std::array<RollingInput<T>, kWheelsets> rolling;
+  bool mixed = false;
   for (int i = 0; i < kWheelsets; ++i) {
     const int b = kWheelset1 + i;
-    law[i] =
-        FreezeCreepLaw(contact.adhesion, w.creep_stiffness, rail.normal[i], rail.friction[i], v0.x[b], v_ref);
+    mixed |= rail.surface[i].adhesion == nullptr;
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
     rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
                   r * retarding};
   }
-  const std::array<RollingResult<T>, kWheelsets> rolled = StepRolling(w.rolling, law, rolling, dt);
+  const std::array<RollingResult<T>, kWheelsets> rolled =
+      mixed ? RollOnMixedSurfaces(w, rail, rolling, dt, v0)
+            : RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) -> const AdhesionParams& {
+                return *surface.adhesion;
+              });
 
   WheelsetWork<T> work;
   for (int i = 0; i < kWheelsets; ++i) {
@@ -249,8 +277,8 @@ void BookWork(const Wagon& w, const OuterForces<T>& outer, const WheelsetWork<T>
 }
 
 template <class T>
-void StepWagon(const Wagon& w, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T>& s, WagonOutput<T>* output) {
+void StepWagon(const Wagon& w, const Track& track, const VehicleLoads<T>& loads, double dt, WagonState<T>& s,
+               WagonOutput<T>* output) {
   const BodyVector<T> v0 = s.velocity;
   BodyVector<T>& v1 = s.velocity;
   Drift(v0, 0.5 * dt, s.position);

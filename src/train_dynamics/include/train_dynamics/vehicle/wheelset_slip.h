@@ -48,8 +48,8 @@ struct SlipSolution {
 ///
 /// Several wheelsets are solved side by side: an iteration waits for the one before, but not for those of the
 /// others.
-template <class T, std::size_t kCount>
-std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T>, kCount>& law,
+template <class T, std::size_t kCount, class P = double>
+std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T, P>, kCount>& law,
                                               const std::array<T, kCount>& h,
                                               const std::array<T, kCount>& w0) {
   constexpr double kTwoOverPi = 0.63661977236758134308;
@@ -92,9 +92,9 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
 /// what holds them, |T| <= T_max. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
 /// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
 /// the train's speed does not betray.
-template <class T, std::size_t kCount>
+template <class T, std::size_t kCount, class P = double>
 std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
-                                                 const std::array<CreepLaw<T>, kCount>& law,
+                                                 const std::array<CreepLaw<T, P>, kCount>& law,
                                                  const std::array<RollingInput<T>, kCount>& in, double dt) {
   const double r = inertia.radius_m;
   const double h_locked = dt * inertia.inv_mass_per_kg;

@@ -10,13 +10,13 @@
 namespace train_dynamics {
 
 template <class T>
-void Step(const Wagon& wagon, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void Step(const Wagon& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
           WagonState<T>& state, WagonOutput<T>* output) {
   StepWagon(wagon, track, loads, dt, state, output);
 }
 
 template <class T>
-void Step(const LtdVehicle& vehicle, const TrackParams& track, const VehicleLoads<T>& loads, double dt,
+void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
   StepLtd(vehicle, track, loads, dt, state, output);
 }
@@ -73,7 +73,7 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
 }
 
 template <class T, bool with_rare, class Vehicle>
-[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const TrackParams& track, double dt, int steps,
+[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
                                      int packs, const LoadPlaces& load_places,
                                      const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
@@ -95,13 +95,13 @@ template <class T, bool with_rare, class Vehicle>
     ForEachReplyField([first](const RecordInfo& field, const auto& value,
                               double* place) { StoreNumbers(value, place + first * field.numbers); },
                       reply, reply_places);
-    sound = sound & IsSound(pack);
+    sound = sound & IsSound(vehicle, track, pack);
   }
   return AllOf(sound);
 }
 
 template <class T, class Vehicle>
-bool StepPacks(const Vehicle& vehicle, const TrackParams& track, double dt, int steps, int packs,
+bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
   const auto step =
       HasRareLoads<T>(loads) ? &StepPacksUnder<T, true, Vehicle> : &StepPacksUnder<T, false, Vehicle>;
@@ -123,77 +123,6 @@ void RecordPack(const Vehicle& vehicle, const std::byte* state, const std::byte*
 }
 
 template <class T>
-[[gnu::flatten]] void ConnectionForces(const Connection& type, double prediction_s, double time_s, int count,
-                                       const ConnectionArrays& at) {
-  const auto for_each_pack = [&](const auto& law) {
-    for (int i = 0; i < count; i += kLanesOf<T>) {
-      const T rate = Load<T>(at.rate_mps + i);
-      const GearForce<T> f = law(i, Load<T>(at.extension_m + i) + prediction_s * rate, rate);
-      Store(f.force, at.force_n + i);
-      Store(f.elastic, at.elastic_n + i);
-      const auto keep_extreme = [&](MaskOf<T> beyond, double* extreme_n, double* extreme_time_s) {
-        if (!AnyOf(beyond)) return;  // most of the time
-        Store(Select(beyond, f.force, Load<T>(extreme_n + i)), extreme_n + i);
-        Store(Select(beyond, T(time_s), Load<T>(extreme_time_s + i)), extreme_time_s + i);
-      };
-      keep_extreme(f.force > Load<T>(at.tension_n + i), at.tension_n, at.tension_time_s);
-      keep_extreme(f.force < Load<T>(at.compression_n + i), at.compression_n, at.compression_time_s);
-    }
-  };
-  if (type.kind == ConnectionKind::kDrawBar) {
-    for_each_pack([&](int /*i*/, T q, T q_rate) { return DrawBarForce(type.bar, q, q_rate); });
-  } else if (type.gear.params.friction == DraftGearFriction::kSmooth) {
-    const DraftGear gear = type.gear;  // a copy that no store can change: its numbers stay in registers
-    for_each_pack([&](int /*i*/, T q, T q_rate) { return SmoothGearForce(gear, q, q_rate); });
-  } else {
-    for_each_pack([&](int i, T q, T q_rate) {
-      StickState<T> stick{Load<T>(at.stick_m + i), Load<T>(at.stick_n + i)};
-      const GearForce<T> f = StickSpringGearForce(type.gear, q, q_rate, stick);
-      Store(stick.q, at.stick_m + i);
-      Store(stick.force, at.stick_n + i);
-      return f;
-    });
-  }
-}
-
-template <class T>
-void ConnectionWork(int count, const double* extension_m, const ConnectionArrays& at) {
-  for (int i = 0; i < count; i += kLanesOf<T>) {
-    const T end = Load<T>(extension_m + i);
-    const T friction = Load<T>(at.force_n + i) - Load<T>(at.elastic_n + i);
-    Store(Load<T>(at.dissipated_j + i) + friction * (end - Load<T>(at.extension_m + i)), at.dissipated_j + i);
-    Store(end, at.extension_m + i);
-  }
-}
-
-template <class T>
-void CylinderPressures(const BrakePhases& phases, double time_s, int count, double* pressure_pa) {
-  for (int i = 0; i < count; i += kLanesOf<T>) {
-    Store(CylinderPressure<T>(phases, i, time_s), pressure_pa + i);
-  }
-}
-
-template <class T>
-void CylinderGaps(const BrakePhases& phases, double time_s, double dt_s, int count, const GapArrays& at) {
-  for (int i = 0; i < count; i += kLanesOf<T>) {
-    const CylinderGap<T> gap = CylinderGapAt<T>(phases, i, time_s);
-    Store(gap.target_pa, at.target_pa + i);
-    Store(gap.gap_pa, at.gap_pa + i);
-    Store(Exp(-gap.rate_per_s * dt_s), at.decay + i);
-  }
-}
-
-template <class T>
-void CloseCylinderGaps(int steps, int count, const GapArrays& at, double* pressure_pa) {
-  for (int i = 0; i < count; i += kLanesOf<T>) {
-    T gap = Load<T>(at.gap_pa + i);
-    for (int step = 0; step < steps; ++step) gap = gap * Load<T>(at.decay + i);
-    Store(gap, at.gap_pa + i);
-    Store(Load<T>(at.target_pa + i) + gap, pressure_pa + i);
-  }
-}
-
-template <class T>
 constexpr LaneKernels KernelsOver(const char* instruction_set) {
   LaneKernels kernels{};
   kernels.instruction_set = instruction_set;
@@ -202,11 +131,6 @@ constexpr LaneKernels KernelsOver(const char* instruction_set) {
   kernels.step_ltd = &StepPacks<T, LtdVehicle>;
   kernels.record_wagons = &RecordPack<T, Wagon>;
   kernels.record_ltd = &RecordPack<T, LtdVehicle>;
-  kernels.connection_forces = &ConnectionForces<T>;
-  kernels.connection_work = &ConnectionWork<T>;
-  kernels.cylinder_pressures = &CylinderPressures<T>;
-  kernels.cylinder_gaps = &CylinderGaps<T>;
-  kernels.close_cylinder_gaps = &CloseCylinderGaps<T>;
   return kernels;
 }
 

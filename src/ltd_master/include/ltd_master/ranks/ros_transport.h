@@ -1,0 +1,102 @@
+#pragma once
+
+#include <train_brake_msgs/Step.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ltd_master/ranks/late_watch.h"
+#include "ltd_master/ranks/recovery_log.h"
+#include "train_dynamics/train/lockstep.h"
+#include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/scenario.h"
+
+namespace ltd_master {
+
+class RankCaller;
+class RankMessages;
+
+struct RosTransportOptions {
+  double start_timeout_s = 60.0;      ///< for all ranks to come up, and to be configured; 0: for ever
+  double exchange_deadline_s = 30.0;  ///< for all replies of an exchange; 0: for ever
+  int blocking_threads = 0;           ///< 0: asynchronous; else see MakeBlockingCaller
+  bool recover = true;                ///< bring lost ranks back; false: the run ends with them
+  double recovery_timeout_s = 60.0;   ///< for each lost rank, one after the other, to come back; 0: for ever
+  std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
+  bool shared_memory = true;                ///< with ranks on the same machine; only asynchronous
+  std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
+};
+
+/// How the last exchange went, in wall time.
+struct ExchangeTiming {
+  double wall_s = 0.0;    ///< from the packing of the first request to the unpacking of the last reply
+  int last_rank = 0;      ///< index of the rank that replied last
+  bool was_late = false;  ///< it took so long that those who were late have been named
+};
+
+/// Ranks that are wagon_node processes: the master's end of Configure.srv and Step.srv.
+///
+/// Start     waits until every rank has advertised its services (names who is missing, every 5 s), then
+///           configures all of them side by side.
+/// Exchange  sends every rank its request before it waits for any, and returns when all have replied.
+///
+/// Whoever is late in either is named after 1, 3 and 10 s, and lost at the deadline. A rank is lost, too, when
+/// its connection breaks or its reply cannot be read. A lost rank is brought back, while the others wait:
+///
+///   1. wait until a node of its name answers: respawned, started by hand anywhere, or the same one, awake again
+///   2. Configure it with the last snapshot of its vehicles
+///   3. Step it again through the exchanges since: the same bits, because a rank's motion depends on nothing else
+///
+/// A node that refuses one of these, or is lost in it, is not taken, and the next one is waited for.
+///
+/// Both throw RankFailure (no recovery wanted, or in vain; a refusal; a reply that makes no sense) and
+/// WaitInterrupted; afterwards the transport is of no more use.
+///
+/// The connections last as long as the transport. Their end tells the wagon nodes that the run is over.
+class RosTransport : public train_dynamics::Transport {
+ public:
+  /// @param ranks   their names are resolved in this node's namespace
+  /// @param run_id  unlike that of any other run; not 0
+  RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_t run_id,
+               const train_dynamics::ScenarioParams& scenario, RosTransportOptions options);
+  ~RosTransport() override;
+
+  void Start(train_dynamics::ExchangeReply& reply) override;
+  void Resume(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot,
+              train_dynamics::ExchangeReply& reply) override;
+  void Exchange(const train_dynamics::ExchangeRequest& request,
+                train_dynamics::ExchangeReply& reply) override;
+
+  const ExchangeTiming& timing() const { return timing_; }
+  unsigned recoveries() const { return recoveries_; }                        ///< of lost ranks, so far
+  const std::vector<train_dynamics::Rank>& ranks() const { return ranks_; }  ///< with resolved names
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void WaitForRanks();
+  /// Brings back those that were lost in a call. @param catch_up  what a node in a lost one's place has to do
+  void Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
+               const std::function<void(int rank)>& catch_up);
+  /// Tries nodes of a lost rank's name until one of them has caught up.
+  void BringBack(const LostRank& lost, const std::string& when, const std::function<void()>& catch_up);
+  void Reconfigure(int rank);
+  void Replay(int rank);
+  void StepOne(int rank, train_brake_msgs::Step& call);
+  void KeepForRecovery();
+
+  std::vector<train_dynamics::Rank> ranks_;
+  RosTransportOptions options_;
+  std::unique_ptr<RankMessages> messages_;
+  RecoveryLog log_;
+  train_dynamics::ExchangeRequest request_;  ///< of the present exchange
+  unsigned recoveries_ = 0;
+  std::unique_ptr<RankCaller> caller_;
+  ExchangeTiming timing_;
+};
+
+}  // namespace ltd_master

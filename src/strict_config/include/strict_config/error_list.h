@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace strict_config {
+
+/// The path of a key in a configuration, "consist[2].vehicle.mass_kg", for messages.
+struct KeyPath {
+  KeyPath(std::string path = "", std::size_t part_begin = 0) : text(std::move(path)), part(part_begin) {}
+  KeyPath(const char* path) : KeyPath(std::string(path)) {}
+
+  std::string text;
+  std::size_t part = 0;  ///< where the path within the innermost referenced part begins
+};
+
+/// Everything that is wrong with a configuration, so that a user repairs it in one go.
+///
+/// Text() lists the errors by file (in the order in which files were first complained about) and line, one
+/// per line: "wagon.yaml:12: contact.friction_coefficient must be > 0, got -0.4".
+class ErrorList {
+ public:
+  /// Adds an error of the user.
+  /// @param file  the file as the user would write it, or an override as it was given ("--set a=1")
+  /// @param line  counted from 1; 0: the error belongs to the whole file, and no line is shown
+  /// @param path  of the key; may be empty
+  /// @param text  what is wrong with it
+  ///
+  /// The same error of one part is reported once, even when the part is used in many places (one vehicle file
+  /// throughout a train).
+  void Add(const std::string& file, int line, const KeyPath& path, const std::string& text);
+
+  bool empty() const { return count_ == 0; }
+  /// The number of errors, including those beyond the number that is kept.
+  std::size_t size() const { return count_; }
+  /// The number of calls of Add, with those that repeated an error.
+  std::size_t reports() const { return reports_; }
+  /// Whether there are so many that further ones are only counted.
+  bool full() const { return errors_.size() >= kKept; }
+
+  /// The first `shown` errors, one per line, and how many there are beyond.
+  std::string Text(std::size_t shown = 50) const;
+
+ private:
+  static constexpr std::size_t kKept = 1000;
+
+  struct Error {
+    std::size_t file_order;
+    int line;
+    std::string text;
+  };
+  std::vector<Error> errors_;
+  std::size_t count_ = 0;
+  std::size_t reports_ = 0;
+  std::map<std::string, std::size_t> file_order_;
+  std::set<std::string> seen_;
+};
+
+/// A configuration that cannot be used; what() is ErrorList::Text().
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const ErrorList& errors) : std::runtime_error(errors.Text()) {}
+};
+
+}  // namespace strict_config

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+enum class BrakeCommandKind { kApply, kEmergency, kRelease };
+
+/// What the driver does with the brake, and when.
+struct BrakeCommand {
+  double time_s = kRequired;
+  BrakeCommandKind kind = BrakeCommandKind::kApply;
+  double reduction_kpa = kRequired;  ///< of the pipe in total, for kApply only
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("time_s", time_s, kNonNegative);
+    v.Choice("kind", kind,
+             {{"apply", BrakeCommandKind::kApply},
+              {"emergency", BrakeCommandKind::kEmergency},
+              {"release", BrakeCommandKind::kRelease}});
+    if (kind == BrakeCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
+  }
+};
+
+}  // namespace train_dynamics

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "train_dynamics/brake/air_brake.h"
+#include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/brake/brake_pressures.h"
+#include "train_dynamics/brake/pressure_table.h"
+#include "train_dynamics/judgement.h"
+
+namespace train_dynamics {
+
+enum class BrakeSystemKind { kEmpirical };
+
+/// A brake system that turns the driver's commands into cylinder pressures.
+struct BrakeSystemParams {
+  std::string name;
+  BrakeSystemKind kind = BrakeSystemKind::kEmpirical;
+  AirBrakeParams empirical;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Choice("kind", kind, {{"empirical", BrakeSystemKind::kEmpirical}});
+    empirical.Visit(v);
+  }
+
+  /// What these commands break in a train of so many vehicles.
+  std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
+    return empirical.BrokenRules(commands, vehicles);
+  }
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands) const {
+    return empirical.Warnings(commands);
+  }
+};
+
+/// The times at which pressures are asked for: middles of exchanges, and records.
+struct PressureGrid {
+  double exchange_interval_s;
+  int exchanges_per_record;
+};
+
+/// The brake of a train, one of a closed set of systems, chosen once per train. Each has
+///
+///   OpenPipe(time_s, connection)       the brake pipe parts there: an emergency from both sides
+///   PressuresAt(time_s, pressure_pa)   cylinder pressure of each vehicle [Pa]; times ascend
+///   ForEachField(function)             calls function(number) for each number of its state
+///
+/// The list of fields serves saving, restoring and the digest of the train's state; see train/snapshot.h.
+class BrakeSystem {
+ public:
+  using System = std::variant<BrakePressures, PressureTable>;
+
+  explicit BrakeSystem(System system) : system_(std::move(system)) {}
+  /// @param vehicle_positions_m  see AirBrake
+  /// @throws std::invalid_argument as AirBrake
+  BrakeSystem(const BrakeSystemParams& params, const std::vector<BrakeCommand>& commands,
+              const std::vector<double>& vehicle_positions_m, const PressureGrid& grid);
+
+  /// Resizes `pressure_pa`.
+  void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
+    std::visit([&](auto& system) { system.PressuresAt(time_s + ahead_s_, pressure_pa); }, system_);
+  }
+  void OpenPipe(double time_s, int connection) {
+    std::visit([&](auto& system) { system.OpenPipe(time_s + ahead_s_, connection); }, system_);
+  }
+  /// From now on a time means one that is so much later.
+  void MoveAhead(double seconds) { ahead_s_ += seconds; }
+
+  template <class Function>
+  void ForEachField(Function&& function) {
+    std::visit([&](auto& system) { system.ForEachField(function); }, system_);
+  }
+
+ private:
+  System system_;
+  double ahead_s_ = 0.0;
+};
+
+}  // namespace train_dynamics

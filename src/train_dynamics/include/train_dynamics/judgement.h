@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+/// A rule between the parts of a configuration that does not hold, as a visitor's Check takes it.
+struct BrokenRule {
+  std::string key, text;
+  Keys reads;
+};
+
+/// Something that is allowed but most likely not meant, or beyond what was shown to work.
+struct Warning {
+  std::string key;   ///< its path in the configuration
+  std::string text;  ///< a sentence with numbers and remedy
+};
+
+}  // namespace train_dynamics

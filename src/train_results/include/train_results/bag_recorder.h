@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "train_results/bag_writer.h"
+#include "train_results/conversions.h"
+
+namespace train_results {
+
+/// Writes every record of a run into a bag, under the topics on which ltd_master publishes:
+///
+///   /train/state  /train/in_train_forces  /train/brake_pressures  /train/energy_ledger
+///   /train/wagon_NNN/state  /train/scenario
+class BagRecorder {
+ public:
+  /// @throws std::system_error if the file cannot be made
+  BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
+
+  /// Is to go on with a bag that a checkpoint is of, and does so at GoOn, see BagWriter.
+  BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint, int vehicles);
+  void GoOn() { bag_.GoOn(); }
+  train_dynamics::Bytes Checkpoint();
+
+  /// An observer of the run's TrainMaster. @throws std::system_error
+  void Record(const train_dynamics::TrainRecord& record);
+
+  /// Completes the bag. @throws std::system_error
+  void Close() { bag_.Close(); }
+
+ private:
+  int WagonTopic(int vehicle, int vehicles);
+
+  BagWriter bag_;
+  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
+  std::map<int, int> wagon_topic_;  ///< by vehicle
+  double initial_j_ = 0.0;
+  train_brake_msgs::TrainState state_;
+  train_brake_msgs::InTrainForces forces_;
+  train_brake_msgs::BrakePressures pressures_;
+  train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::WagonState wagon_;
+};
+
+}  // namespace train_results

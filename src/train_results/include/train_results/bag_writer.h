@@ -1,0 +1,103 @@
+#pragma once
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/numeric/stream_digest.h"
+#include "train_dynamics/train/byte_stream.h"
+
+namespace train_results {
+
+/// Writes messages into a bag (format 2.0, not compressed), one after the other.
+///
+/// Does for a file that only grows what rosbag::Bag does for any. That one seeks before every message and
+/// writes it in pieces, 25 system calls for a record of a train, and cannot be closed on a full disk. Here a
+/// message is serialised into the open chunk, which goes to the file in one piece once it has 768 KiB.
+///
+/// The bag is called FILE.active until it is complete, so that FILE is always readable.
+class BagWriter {
+ public:
+  /// @throws std::system_error if the file cannot be made
+  explicit BagWriter(const std::string& file);
+  /// Is to go on with a bag that a checkpoint is of, FILE or FILE.active. Only looks at it: see GoOn.
+  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then
+  BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
+  /// Opens that bag and cuts off what came after the checkpoint; before that nothing can be written.
+  /// @throws std::system_error
+  void GoOn();
+  ~BagWriter();
+  BagWriter(const BagWriter&) = delete;
+  BagWriter& operator=(const BagWriter&) = delete;
+
+  /// A new topic, for Write. @param latched  a player gives its last message to whoever comes later
+  template <class Message>
+  int AddTopic(const std::string& name, bool latched = false) {
+    namespace traits = ros::message_traits;
+    return AddConnection(name, traits::datatype<Message>(), traits::md5sum<Message>(),
+                         traits::definition<Message>(), latched);
+  }
+
+  /// @param time  not before that of the last message
+  /// @throws std::system_error if the file cannot grow any more
+  template <class Message>
+  void Write(int topic, ros::Time time, const Message& message) {
+    const std::uint32_t size = ros::serialization::serializationLength(message);
+    ros::serialization::OStream stream(BeginMessage(topic, time, size), size);
+    ros::serialization::serialize(stream, message);
+    if (chunk_.size() > kChunkThreshold) WriteChunk();
+  }
+
+  int topics() const { return static_cast<int>(connections_.size()); }
+
+  /// Writes what has come so far. @return what a writer needs to go on behind it
+  train_dynamics::Bytes Checkpoint();
+
+  /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit; if not even those of
+  /// the last checkpoint do beside the index, it stays FILE.active without one.
+  /// @throws std::system_error if it lacks anything
+  void Close();
+
+ private:
+  using Bytes = train_dynamics::Bytes;
+  static constexpr std::size_t kChunkThreshold = 768 * 1024;
+
+  struct Connection {
+    Bytes record;                ///< its description, as in the file
+    bool described = false;      ///< in a chunk
+    std::uint32_t messages = 0;  ///< in the open chunk
+    Bytes index;                 ///< time and place of each of these
+  };
+  struct Chunk {
+    std::uint64_t position = 0;                     ///< in the file
+    ros::Time begin, end;                           ///< times of its first and last message
+    std::map<std::uint32_t, std::uint32_t> counts;  ///< messages by connection
+  };
+
+  int AddConnection(const std::string& topic, const std::string& type, const std::string& md5sum,
+                    const std::string& definition, bool latched);
+  std::uint8_t* BeginMessage(int topic, ros::Time time, std::uint32_t size);
+  void WriteChunk();
+  void Truncate();
+  void WriteIndex();
+  void WriteFileHeader(std::uint64_t index_position, std::size_t connections);
+  void Write(const Bytes& bytes, std::uint64_t position);
+  [[noreturn]] void Fail() const;
+
+  std::string file_;
+  int descriptor_;
+  std::uint64_t size_;                   ///< of the file, up to its last whole chunk
+  train_dynamics::StreamDigest digest_;  ///< of the file behind its header, up to the same
+  std::vector<Connection> connections_;
+  std::vector<Chunk> chunks_;    ///< in the file
+  std::size_t kept_chunks_ = 0;  ///< of these, that a checkpoint is of
+  Chunk open_;
+  Bytes chunk_;  ///< records of the open one
+};
+
+}  // namespace train_results

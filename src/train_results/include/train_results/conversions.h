@@ -1,0 +1,33 @@
+#pragma once
+
+#include <std_msgs/String.h>
+#include <train_brake_msgs/BrakePressures.h>
+#include <train_brake_msgs/EnergyLedger.h>
+#include <train_brake_msgs/InTrainForces.h>
+#include <train_brake_msgs/TrainState.h>
+#include <train_brake_msgs/WagonState.h>
+
+#include "train_dynamics/train/ranks.h"
+#include "train_dynamics/train/train_master.h"
+
+/// From records of the physics to messages. A message keeps its memory from record to record.
+namespace train_results {
+
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainState& message);
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::InTrainForces& message);
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::BrakePressures& message);
+
+/// @param initial_j  energy of the train at time 0 [J]
+void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::EnergyLedger& ledger,
+             double initial_j, train_brake_msgs::EnergyLedger& message);
+
+void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
+             train_brake_msgs::WagonState& message);
+
+/// Topic of the scenario, in the namespace of the train; once in a run.
+inline constexpr const char* kScenarioTopic = "scenario";
+
+/// The scenario with everything resolved, as YAML that runs again: what a viewer of a run or bag has to know.
+std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario);
+
+}  // namespace train_results

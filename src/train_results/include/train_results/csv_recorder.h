@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "train_dynamics/numeric/stream_digest.h"
+#include "train_dynamics/train/train_master.h"
+
+namespace train_results {
+
+/// Writes a run as CSV tables into a folder; units stand in the headers.
+///
+///   train_history.csv  mean, lead and tail speed, largest forces, mean pressure
+///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
+///   wagon_NNN.csv      one per detailed vehicle
+///   couplers.csv       largest forces of every connection and when (at the end)
+///   vehicles.csv       the last record of every vehicle (at the end)
+class CsvRecorder {
+ public:
+  explicit CsvRecorder(const std::filesystem::path& folder);
+  /// Is to go on with tables that a checkpoint is of. Only looks at them: see GoOn.
+  /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were
+  CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint, int vehicles);
+  /// Opens those tables and cuts off what came after the checkpoint; before that nothing can be written.
+  /// @throws std::filesystem::filesystem_error
+  void GoOn();
+  train_dynamics::Bytes Checkpoint();
+
+  /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
+  void Record(const train_dynamics::TrainRecord& record);
+
+  /// Writes the tables of the end. @throws std::runtime_error if anything could not be written
+  void Close(const train_dynamics::TrainMaster& master);
+
+ private:
+  void OpenWagon(int vehicle);
+  void CheckAll() const;
+
+  std::filesystem::path folder_;
+  int vehicles_ = 0;  ///< of the train, once a record or a checkpoint told
+  std::ofstream history_, pressures_;
+  std::map<int, std::ofstream> wagons_;
+  std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
+  train_dynamics::RecordArrays last_;                            ///< the last record of the vehicles
+};
+
+}  // namespace train_results

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <train_brake_msgs/BrakePressures.h>
+#include <train_brake_msgs/EnergyLedger.h>
+#include <train_brake_msgs/InTrainForces.h>
+#include <train_brake_msgs/TrainState.h>
+#include <train_brake_msgs/WagonState.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "train_results/bag_file.h"
+
+/// Recorded messages as bytes, compared with what they should be. Nothing in the bytes is trusted: no size that they
+/// announce is allocated.
+namespace train_results {
+
+/// A value of a recorded message that is not what a repetition of the run gives.
+struct Difference {
+  int vehicle = 0;       ///< from 1; 0: not of a single vehicle
+  std::string quantity;  ///< the field's name
+  std::string text;      ///< "vehicle 101, front bolster: body_z_m is 0.0012 in the bag, 0.0013 now"
+};
+
+/// A text that may come from a damaged bag: as it is if it is fit to print, else with question marks.
+std::string Presentable(std::string text);
+
+/// The field `exchange` of a message that begins with a header and that; nothing if it is too short for both.
+std::optional<std::uint64_t> ExchangeOf(const Bytes& message);
+
+/// Compares all fields but the header, in the order of the definition, from which their names are; NaN equals NaN.
+/// @return where they differ; ends with the first array whose size differs
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::TrainState& repeated);
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::InTrainForces& repeated);
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::BrakePressures& repeated);
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::EnergyLedger& repeated);
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::WagonState& repeated);
+
+}  // namespace train_results

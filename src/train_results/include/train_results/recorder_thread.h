@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "train_dynamics/train/train_master.h"
+
+namespace train_results {
+
+/// Lets a recorder work in a thread of its own, so that a run does not wait for its files.
+///
+/// Records are copied into a queue and recorded in their order. When the queue is full, the run waits: nothing
+/// is lost. The thread wakes for several records at once, or after 0.1 s, because waking costs more than a record.
+class RecorderThread {
+ public:
+  using Recorder = std::function<void(const train_dynamics::TrainRecord&)>;
+
+  explicit RecorderThread(Recorder recorder);
+  /// Finishes; what is thrown then is lost.
+  ~RecorderThread();
+
+  /// An observer of the run's TrainMaster. @throws what the recorder threw at an earlier record
+  void Record(const train_dynamics::TrainRecord& record);
+
+  /// Returns when all records so far are recorded. @throws what the recorder threw
+  void Drain();
+  /// The same, for the last time. @throws what the recorder threw, and only once
+  void Finish();
+
+ private:
+  static constexpr std::uint64_t kQueue = 64;  ///< records
+  static constexpr std::uint64_t kBatch = 16;  ///< that are worth a wake-up
+
+  void Work();
+
+  Recorder recorder_;
+  std::array<train_dynamics::TrainRecord, kQueue> queue_;  ///< record n is in n % kQueue
+  std::mutex mutex_;
+  std::condition_variable work_, room_;
+  std::uint64_t queued_ = 0, recorded_ = 0;  ///< so far
+  bool draining_ = false, ending_ = false;
+  std::exception_ptr error_;
+  std::thread thread_;
+};
+
+}  // namespace train_results

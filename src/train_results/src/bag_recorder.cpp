@@ -1,0 +1,90 @@
+#include "train_results/bag_recorder.h"
+
+#include <algorithm>
+
+namespace train_results {
+
+using train_dynamics::ByteReader;
+using train_dynamics::Bytes;
+using train_dynamics::ByteWriter;
+
+BagRecorder::BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario)
+    : bag_(file),
+      state_topic_(bag_.AddTopic<train_brake_msgs::TrainState>("/train/state")),
+      forces_topic_(bag_.AddTopic<train_brake_msgs::InTrainForces>("/train/in_train_forces")),
+      pressures_topic_(bag_.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures")),
+      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {
+  constexpr bool kLatched = true;
+  const int scenario_topic =
+      bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
+  bag_.Write(scenario_topic, ros::TIME_MIN, ScenarioMessage(scenario));
+}
+
+BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int vehicles)
+    : bag_(file, ByteReader(checkpoint).Block()) {
+  ByteReader reader(checkpoint);
+  reader.Block();  // the bag's
+  const auto below = [&reader](int limit, const char* what) {
+    const std::uint64_t word = reader.Word();
+    if (word >= static_cast<std::uint64_t>(limit)) {
+      throw train_dynamics::SnapshotError(std::string("is damaged: no such ") + what);
+    }
+    return static_cast<int>(word);
+  };
+  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
+    *topic = below(bag_.topics(), "topic");
+  }
+  initial_j_ = reader.Number();
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    const int vehicle = below(vehicles, "vehicle");
+    wagon_topic_[vehicle] = below(bag_.topics(), "topic");
+  }
+  reader.End();
+}
+
+Bytes BagRecorder::Checkpoint() {
+  ByteWriter writer;
+  writer.Add(bag_.Checkpoint());
+  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
+    writer.Add(static_cast<std::uint64_t>(topic));
+  }
+  writer.Add(initial_j_);
+  writer.Add(std::uint64_t{wagon_topic_.size()});
+  for (const auto& [vehicle, topic] : wagon_topic_) {
+    writer.Add(static_cast<std::uint64_t>(vehicle));
+    writer.Add(static_cast<std::uint64_t>(topic));
+  }
+  return writer.bytes();
+}
+
+void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
+  // A bag knows no time before this one.
+  const ros::Time time = std::max(ros::TIME_MIN, ros::Time(record.time_s));
+  Convert(record, state_);
+  bag_.Write(state_topic_, time, state_);
+  Convert(record, forces_);
+  bag_.Write(forces_topic_, time, forces_);
+  Convert(record, pressures_);
+  bag_.Write(pressures_topic_, time, pressures_);
+  if (record.ledger) {
+    if (record.exchange == 0) initial_j_ = record.ledger->Stored();
+    Convert(record, *record.ledger, initial_j_, ledger_);
+    bag_.Write(ledger_topic_, time, ledger_);
+  }
+  const int vehicles = static_cast<int>(record.vehicles.position_m.size());
+  for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
+    Convert(record, detail, wagon_);
+    bag_.Write(WagonTopic(detail.vehicle, vehicles), time, wagon_);
+  }
+}
+
+int BagRecorder::WagonTopic(int vehicle, int vehicles) {
+  const auto [topic, is_new] = wagon_topic_.try_emplace(vehicle);
+  if (is_new) {
+    topic->second = bag_.AddTopic<train_brake_msgs::WagonState>(
+        "/train/" + train_dynamics::VehicleName(vehicle, vehicles) + "/state");
+  }
+  return topic->second;
+}
+
+}  // namespace train_results

@@ -1,0 +1,87 @@
+#include "train_results/conversions.h"
+
+#include <train_brake_msgs/wagon_detail.h>
+
+#include <algorithm>
+
+#include "strict_config/writer.h"
+
+namespace train_results {
+namespace {
+
+using train_dynamics::TrainRecord;
+
+template <class Message>
+void Stamp(const TrainRecord& record, Message& message) {
+  message.header.stamp.fromSec(record.time_s);
+  message.exchange = record.exchange;
+}
+
+template <class From, class To>
+void Copy(const From& from, To& to) {
+  to.resize(from.size());
+  std::transform(from.begin(), from.end(), to.begin(),
+                 [](auto value) { return static_cast<typename To::value_type>(value); });
+}
+
+}  // namespace
+
+void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
+  Stamp(record, message);
+  train_dynamics::ForEachRecordField(
+      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { Copy(from, to); }, record.vehicles,
+      message);
+  Copy(record.acceleration_mps2, message.acceleration_mps2);
+  message.vehicle_digest = record.vehicles.state_digest;
+  message.state_digest = record.state_digest;
+}
+
+void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) {
+  Stamp(record, message);
+  const size_t connections = record.coupler_extension_m.size();
+  message.coupler_force_n.resize(connections);
+  for (size_t c = 0; c < connections; ++c) {
+    message.coupler_force_n[c] = static_cast<float>(record.held.coupler_force_n[c + 1]);
+  }
+  Copy(record.coupler_extension_m, message.coupler_deflection_m);
+}
+
+void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
+  Stamp(record, message);
+  Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
+}
+
+void Convert(const TrainRecord& record, const train_dynamics::EnergyLedger& ledger, double initial_j,
+             train_brake_msgs::EnergyLedger& message) {
+  Stamp(record, message);
+  message.element.clear();
+  message.dissipated_j.clear();
+  for (const auto& [element, energy] : ledger.dissipated_j) {
+    message.element.push_back(element);
+    message.dissipated_j.push_back(energy);
+  }
+  message.initial_j = initial_j;
+  message.kinetic_j = ledger.kinetic_j;
+  message.potential_j = ledger.potential_j;
+  message.gravity_work_j = ledger.gravity_work_j;
+  message.traction_work_j = ledger.traction_work_j;
+  message.residual_j = ledger.Residual(initial_j);
+}
+
+void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detail,
+             train_brake_msgs::WagonState& message) {
+  Stamp(record, message);
+  message.vehicle = static_cast<std::uint32_t>(detail.vehicle + 1);
+  train_brake_msgs::DetailToMessage(detail, message);
+  message.front_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle]);
+  message.rear_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle + 1]);
+  message.cylinder_pressure_pa = static_cast<float>(record.held.cylinder_pressure_pa[detail.vehicle]);
+}
+
+std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario) {
+  std_msgs::String message;
+  message.data = strict_config::Write(scenario);
+  return message;
+}
+
+}  // namespace train_results

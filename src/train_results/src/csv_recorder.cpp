@@ -1,0 +1,214 @@
+#include "train_results/csv_recorder.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "train_results/conversions.h"
+#include "train_results/plain_file.h"
+
+namespace train_results {
+namespace {
+
+using train_dynamics::ByteReader;
+using train_dynamics::Bytes;
+using train_dynamics::ByteWriter;
+using train_dynamics::TrainRecord;
+using train_dynamics::WagonDetail;
+
+constexpr const char* kHistory = "train_history.csv";
+constexpr const char* kPressures = "pressures.csv";
+std::string WagonTable(int vehicle, int vehicles) {
+  return train_dynamics::VehicleName(vehicle, vehicles) + ".csv";
+}
+
+std::ofstream Open(const std::filesystem::path& file) {
+  std::ofstream stream(file);
+  if (!stream) throw std::runtime_error("cannot write " + file.string());
+  return stream;
+}
+
+void Check(const std::ofstream& stream, const std::filesystem::path& file) {
+  if (!stream) throw std::runtime_error("could not write all of " + file.string() + ": is the disk full?");
+}
+
+template <class Values>
+void Row(std::ofstream& stream, const Values& values) {
+  fmt::print(stream, ",{:.9g}", fmt::join(values, ","));
+}
+
+/// A line for each vehicle, a column for each number of its record.
+std::string VehicleTable(const train_dynamics::RecordArrays& record) {
+  using train_dynamics::RecordInfo;
+  std::string table = "vehicle";
+  train_dynamics::ForEachRecordField(
+      [&](const RecordInfo& field, const auto&) {
+        for (int i = 1; i <= field.numbers; ++i) {
+          table += field.numbers == 1 ? fmt::format(",{}", field.name) : fmt::format(",{}_{}", field.name, i);
+        }
+      },
+      record);
+  table += '\n';
+  for (std::size_t vehicle = 0; vehicle < record.speed_mps.size(); ++vehicle) {
+    table += std::to_string(vehicle + 1);
+    train_dynamics::ForEachRecordField(
+        [&](const RecordInfo& field, const auto& array) {
+          const auto first = array.begin() + static_cast<long>(vehicle * field.numbers);
+          table += fmt::format(",{:.12g}", fmt::join(first, first + field.numbers, ","));
+        },
+        record);
+    table += '\n';
+  }
+  return table;
+}
+
+}  // namespace
+
+CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
+    : folder_(folder), history_(Open(folder / kHistory)), pressures_(Open(folder / kPressures)) {
+  fmt::print(
+      history_,
+      "time_s,mean_speed_kmh,lead_speed_kmh,tail_speed_kmh,mean_position_m,max_tension_n,max_compression_n,"
+      "mean_cylinder_pressure_pa\n");
+}
+
+CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint, int vehicles)
+    : folder_(folder), vehicles_(vehicles) {
+  ByteReader reader(checkpoint);
+  const auto check = [&](const std::string& name) {
+    const std::uint64_t size = reader.Word(), value = reader.Word();
+    train_dynamics::StreamDigest& digest = digests_[name];
+    AddToDigest(folder / name, 0, size, digest);
+    if (digest.value() != value) {
+      throw std::invalid_argument((folder / name).string() +
+                                  " is not the table that the checkpoint is of, or it is damaged");
+    }
+  };
+  check(kHistory);
+  check(kPressures);
+  for (std::uint64_t count = reader.Word(); count > 0; --count) {
+    const std::uint64_t vehicle = reader.Word();
+    if (vehicle >= static_cast<std::uint64_t>(vehicles)) {
+      throw train_dynamics::SnapshotError("is damaged: no such vehicle");
+    }
+    check(WagonTable(static_cast<int>(vehicle), vehicles));
+    wagons_.emplace(static_cast<int>(vehicle), std::ofstream());
+  }
+  reader.End();
+}
+
+void CsvRecorder::GoOn() {
+  const auto go_on = [&](const std::string& name) {
+    std::filesystem::resize_file(folder_ / name, digests_[name].size());
+    return std::ofstream(folder_ / name, std::ios::app);
+  };
+  history_ = go_on(kHistory);
+  pressures_ = go_on(kPressures);
+  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles_));
+}
+
+Bytes CsvRecorder::Checkpoint() {
+  ByteWriter writer;
+  const auto add = [&](std::ofstream& stream, const std::string& name) {
+    stream.flush();
+    Check(stream, folder_ / name);
+    train_dynamics::StreamDigest& digest = digests_[name];
+    AddToDigest(folder_ / name, digest.size(), static_cast<std::uint64_t>(stream.tellp()), digest);
+    writer.Add(digest.size());
+    writer.Add(digest.value());
+  };
+  add(history_, kHistory);
+  add(pressures_, kPressures);
+  writer.Add(std::uint64_t{wagons_.size()});
+  for (auto& [vehicle, stream] : wagons_) {
+    writer.Add(static_cast<std::uint64_t>(vehicle));
+    add(stream, WagonTable(vehicle, vehicles_));
+  }
+  return writer.bytes();
+}
+
+void CsvRecorder::Record(const TrainRecord& record) {
+  const std::vector<double>& speed = record.vehicles.speed_mps;
+  vehicles_ = static_cast<int>(speed.size());
+  const std::vector<double>& force = record.held.coupler_force_n;
+  const auto mean = [](const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+  };
+  fmt::print(history_, "{:.6f},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", record.time_s,
+             3.6 * record.mean_speed_mps, 3.6 * speed.front(), 3.6 * speed.back(), record.mean_position_m,
+             *std::max_element(force.begin(), force.end()), *std::min_element(force.begin(), force.end()),
+             mean(record.cylinder_pressure_pa));
+
+  if (record.exchange == 0) {
+    fmt::print(pressures_, "time_s");
+    for (size_t i = 1; i <= speed.size(); ++i) fmt::print(pressures_, ",vehicle_{}_pa", i);
+    pressures_ << '\n';
+  }
+  fmt::print(pressures_, "{:.6f}", record.time_s);
+  Row(pressures_, record.cylinder_pressure_pa);
+  pressures_ << '\n';
+
+  for (const WagonDetail& detail : record.vehicles.details) {
+    if (wagons_.count(detail.vehicle) == 0) OpenWagon(detail.vehicle);
+    std::ofstream& wagon = wagons_.at(detail.vehicle);
+    fmt::print(wagon, "{:.6f},{:.9g}", record.time_s, speed[detail.vehicle]);
+    Row(wagon, detail.output.normal_force_n);
+    Row(wagon, detail.output.creepage);
+    Row(wagon, detail.output.creep_force_n);
+    Row(wagon, detail.output.shoe_force_n);
+    Row(wagon, std::vector<double>(detail.position.pitch.begin(),
+                                   detail.position.pitch.begin() + train_dynamics::kWheelset1));
+    Row(wagon, detail.nest_compression_m);
+    Row(wagon, detail.output.wedge_friction_n);
+    fmt::print(wagon, ",{:.9g},{:.9g},{:.9g}\n", force[detail.vehicle], force[detail.vehicle + 1],
+               record.cylinder_pressure_pa[detail.vehicle]);
+  }
+  last_ = static_cast<const train_dynamics::RecordArrays&>(record.vehicles);
+  CheckAll();
+}
+
+void CsvRecorder::OpenWagon(int vehicle) {
+  std::ofstream wagon = Open(folder_ / WagonTable(vehicle, vehicles_));
+  fmt::print(wagon, "time_s,speed_mps");
+  for (const char* quantity : {"normal_force_{}_n", "creepage_{}", "creep_force_{}_n", "shoe_force_{}_n"}) {
+    for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {
+      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), fmt::format("wheelset_{}", i)));
+    }
+  }
+  for (const char* body : {"carbody", "front_bolster", "rear_bolster", "front_frame", "rear_frame"}) {
+    fmt::print(wagon, ",{}_pitch_rad", body);
+  }
+  for (const char* quantity : {"spring_deflection_{}_m", "wedge_friction_{}_n"}) {
+    for (const char* quarter : {"front_front", "front_rear", "rear_front", "rear_rear"}) {
+      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), quarter));
+    }
+  }
+  fmt::print(wagon, ",front_coupler_force_n,rear_coupler_force_n,cylinder_pressure_pa\n");
+  wagons_.emplace(vehicle, std::move(wagon));
+}
+
+void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
+  std::string couplers =
+      "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n";
+  int number = 1;
+  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
+    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
+                            extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
+  }
+  WriteFile(folder_ / "couplers.csv", couplers);
+  WriteFile(folder_ / "vehicles.csv", VehicleTable(last_));
+  for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
+  for (auto& [vehicle, stream] : wagons_) stream.flush();
+  CheckAll();
+}
+
+void CsvRecorder::CheckAll() const {
+  Check(history_, folder_ / kHistory);
+  Check(pressures_, folder_ / kPressures);
+  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
+}
+
+}  // namespace train_results

@@ -1,0 +1,142 @@
+#include "train_results/resume.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "strict_config/writer.h"
+#include "train_dynamics/numeric/digest.h"
+#include "train_results/plain_file.h"
+
+namespace train_results {
+namespace {
+
+namespace fs = std::filesystem;
+using train_dynamics::ScenarioParams;
+using train_dynamics::config::LoadedScenario;
+
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // [bytes], of 1.8 million wagons
+
+std::string VersionLine() { return "# train_brake " TRAIN_BRAKE_VERSION; }
+
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// The first line in which two texts differ, as "'now', was 'then'".
+std::string FirstDifference(const std::string& now, const std::string& then) {
+  std::istringstream a(now), b(then);
+  std::string line_now, line_then;
+  while (true) {
+    const bool has_now = static_cast<bool>(std::getline(a, line_now));
+    const bool has_then = static_cast<bool>(std::getline(b, line_then));
+    if (!has_now && !has_then) return "nothing";
+    if (!has_now) line_now = "(end)";
+    if (!has_then) line_then = "(end)";
+    if (line_now != line_then) return fmt::format("'{}', was '{}'", line_now, line_then);
+  }
+}
+
+/// The commands that the driver has given by then, as text.
+std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
+  std::string text;
+  for (const train_dynamics::BrakeCommand& command : scenario.commands) {
+    if (command.time_s > time_s) continue;
+    const bool applies = command.kind == train_dynamics::BrakeCommandKind::kApply;
+    text += fmt::format("({:g} s: {}) ", command.time_s,
+                        applies ? fmt::format("apply {:g} kPa", command.reduction_kpa)
+                        : command.kind == train_dynamics::BrakeCommandKind::kRelease ? "release"
+                                                                                     : "emergency");
+  }
+  return text.empty() ? "none" : text.substr(0, text.size() - 1);
+}
+
+/// What has been cannot be changed: neither what the state is of and counts by, nor the start, nor what the driver did.
+void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double time_s) {
+  const auto keep = [](const char* key, const auto& value, const auto& was) {
+    if (value == was) return;
+    throw std::invalid_argument(
+        fmt::format("{} must stay {} when a run is resumed, got {}", key, was, value));
+  };
+  const ScenarioParams &p = now.params, &q = then.params;
+  keep("model", std::string(ModelName(p.model)), std::string(ModelName(q.model)));
+  keep("dt_s", p.dt_s, q.dt_s);
+  keep("exchange_interval_s", p.exchange_interval_s, q.exchange_interval_s);
+  keep("record_interval_s", p.record_interval_s, q.record_interval_s);
+  keep("ledger_interval_s", p.ledger_interval_s, q.ledger_interval_s);
+  keep("the number of vehicles", now.consist.vehicles(), then.consist.vehicles());
+  if (p.VehicleModels() != q.VehicleModels()) {
+    throw std::invalid_argument("the model of every vehicle must stay as it is when a run is resumed");
+  }
+  if (p.DetailedVehicles() != q.DetailedVehicles()) {
+    throw std::invalid_argument("detail_vehicles must stay as they are when a run is resumed");
+  }
+  keep("initial_speed_kmh", p.initial_speed_kmh, q.initial_speed_kmh);
+  keep("start_position_m", p.start_position_m, q.start_position_m);
+  if (p.initial_slack != q.initial_slack) {
+    throw std::invalid_argument("initial_slack must stay as it is when a run is resumed");
+  }
+  keep(fmt::format("commands up to {:g} s", time_s).c_str(), CommandsUntil(time_s, p),
+       CommandsUntil(time_s, q));
+  if (p.integrator != q.integrator) {
+    throw std::invalid_argument("integrator must stay as it is when a run is resumed");
+  }
+}
+
+}  // namespace
+
+train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
+  if (!fs::exists(file)) {
+    throw std::invalid_argument(
+        file.string() + " does not exist: the run has left no checkpoint, or it is no folder of a run");
+  }
+  const std::string content = ReadPlainFile(file, kLargestFile);
+  try {
+    return train_dynamics::DecodeTrainCheckpoint({content.begin(), content.end()});
+  } catch (const train_dynamics::SnapshotError& e) {
+    throw std::invalid_argument(file.string() + " " + e.what());
+  }
+}
+
+std::string IdentityOf(const ScenarioParams& scenario) {
+  ScenarioParams named = scenario;
+  if (!scenario.pressure_table.empty()) {
+    named.pressure_table = fmt::format(
+        "digest {:016x}", train_dynamics::TextDigest(ReadPlainFile(scenario.pressure_table, kLargestFile)));
+  }
+  return VersionLine() + "\n" + strict_config::Write(named);
+}
+
+ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>& overrides) {
+  const fs::path config = folder / "config.yaml";
+  train_dynamics::TrainCheckpoint checkpoint = ReadCheckpoint(folder / kCheckpointFile);
+  LoadedScenario then = train_dynamics::config::LoadScenario(config.string(), {});
+  const std::string identity = IdentityOf(then.params);
+  if (FirstLine(checkpoint.scenario) != VersionLine()) {
+    throw std::invalid_argument(fmt::format(
+        "{} was written by '{}', this is '{}': other versions may give other bits, so that none goes on with "
+        "a run of another",
+        (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2),
+        VersionLine().substr(2)));
+  }
+  if (identity != checkpoint.scenario) {
+    throw std::invalid_argument(
+        fmt::format("{} is of another configuration than {}: there is now {}. Undo that, or change values "
+                    "with --set: the "
+                    "result is then a run of its own",
+                    (folder / kCheckpointFile).string(), config.string(),
+                    FirstDifference(identity, checkpoint.scenario)));
+  }
+  LoadedScenario now = train_dynamics::config::LoadScenario(config.string(), overrides);
+  const bool is_branch = IdentityOf(now.params) != identity;
+  if (is_branch)
+    CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
+  if (static_cast<long>(checkpoint.exchange) >= now.params.Exchanges()) {
+    throw std::invalid_argument(
+        fmt::format("{} is of the end of the run, {:g} s: nothing is left to do; a larger duration_s goes on",
+                    (folder / kCheckpointFile).string(),
+                    static_cast<double>(checkpoint.exchange) * now.params.exchange_interval_s));
+  }
+  return {folder, std::move(now), std::move(checkpoint), is_branch};
+}
+
+}  // namespace train_results

@@ -1,0 +1,235 @@
+#include "train_results/run_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <regex>
+#include <stdexcept>
+#include <vector>
+
+#include "strict_config/writer.h"
+#include "train_results/plain_file.h"
+
+namespace train_results {
+namespace {
+
+namespace fs = std::filesystem;
+using train_dynamics::ScenarioParams;
+
+constexpr const char* kBag = "train.bag";
+
+/// First line of the config.yaml of a run: the mark of a folder that holds results of ours and nothing of the user's.
+constexpr const char* kMark =
+    "# A run of train_brake: everything resolved. Running it again gives the same bits.";
+
+fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
+
+bool IsResult(const std::string& name) {
+  static const std::regex pattern(
+      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint|branched_from)(\\."
+      "unfinished)?|"
+      "(pressure_table|train_history|pressures|couplers|vehicles|wagon_[0-9]+)\\.csv");
+  return std::regex_match(name, pattern);
+}
+
+bool HasMark(const fs::path& folder) {
+  if (!fs::is_regular_file(folder / "config.yaml")) return false;
+  std::string begin(std::strlen(kMark), ' ');
+  std::ifstream(folder / "config.yaml").read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kMark;
+}
+
+void MakeFolder(const fs::path& folder) {
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw std::runtime_error(folder.string() + " is not a folder: results cannot go there");
+  }
+  fs::create_directories(folder);
+}
+
+/// Clears it of the results of an earlier run, but of nothing that a user may have put there.
+void ClearFolder(const fs::path& folder) {
+  const bool ours = HasMark(folder);
+  std::vector<fs::path> results;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (IsResult(entry.path().filename().string())) results.push_back(entry.path());
+  }
+  if (!ours && !results.empty()) {
+    throw std::runtime_error(folder.string() + " holds " + results.front().filename().string() +
+                             ", but no run of train_brake: choose another folder for the results");
+  }
+  for (const fs::path& file : results) fs::remove(file);
+}
+
+/// Everything that a repetition of the run needs, so that it gives the same bits.
+void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
+  if (!scenario.pressure_table.empty()) {
+    fs::copy_file(scenario.pressure_table, folder / "pressure_table.csv",
+                  fs::copy_options::overwrite_existing);
+    scenario.pressure_table = "pressure_table.csv";
+  }
+  WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + strict_config::Write(scenario));
+}
+
+/// What recorders write and go on with.
+bool IsRecord(const std::string& name) {
+  static const std::regex pattern(
+      "train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
+  return std::regex_match(name, pattern);
+}
+
+/// Bags as FILE.active: a copy of one is no whole bag, least of all where the disk gets full.
+void CopyRecords(const fs::path& from, const fs::path& to) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+    const std::string name = entry.path().filename().string();
+    if (!IsRecord(name) || !fs::is_regular_file(entry.path())) continue;
+    const fs::path copy = to / (name == kBag ? name + ".active" : name);
+    try {
+      fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+    } catch (const fs::filesystem_error& e) {
+      fs::remove(copy);
+      throw std::runtime_error("cannot copy " + entry.path().string() + " to " + to.string() + ": " +
+                               e.code().message());
+    }
+  }
+}
+
+std::string TextOf(const train_dynamics::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+
+long CheckpointExchanges(const OutputOptions& options, const ScenarioParams& scenario) {
+  if (options.checkpoint_interval_s <= 0.0) return 0;
+  const double records = std::round(options.checkpoint_interval_s / scenario.record_interval_s);
+  return std::max(1L, std::lround(records)) * scenario.ExchangesPerRecord();
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& inputs,
+                     const ScenarioParams& scenario)
+    : options_(options),
+      folder_(options.folder),
+      identity_(IdentityOf(scenario)),
+      checkpoint_exchanges_(CheckpointExchanges(options, scenario)) {
+  if (folder_.empty()) return;
+  for (const fs::path& input : inputs) {
+    if (FolderOf(input) != fs::weakly_canonical(fs::absolute(folder_))) continue;
+    throw std::runtime_error(options.folder + " is the folder of " + input.string() +
+                             ", of which the scenario is made: choose another for the results");
+  }
+  MakeFolder(folder_);
+  lock_.emplace(folder_);
+  if (HasMark(folder_) && fs::exists(folder_ / kCheckpointFile) && !fs::exists(folder_ / "summary.json")) {
+    options.complain(folder_.string() + " held a run that was broken off; it is replaced (--resume goes on)");
+  }
+  ClearFolder(folder_);
+  WriteResolvedConfig(scenario, folder_);
+  if (options.record_bag) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), scenario);
+  if (options.csv) csv_ = std::make_unique<CsvRecorder>(folder_);
+  StartThread();
+}
+
+RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
+    : options_(options),
+      folder_(options.folder.empty() ? run.folder : fs::path(options.folder)),
+      identity_(IdentityOf(run.scenario.params)),
+      checkpoint_exchanges_(CheckpointExchanges(options, run.scenario.params)) {
+  const bool is_elsewhere = fs::weakly_canonical(folder_) != fs::weakly_canonical(run.folder);
+  if (run.is_branch && !is_elsewhere) {
+    throw std::invalid_argument(
+        "a run that is resumed with other values is a run of its own: give it a folder "
+        "of its own, other than " +
+        run.folder.string());
+  }
+  MakeFolder(folder_);
+  lock_.emplace(folder_);
+  if (is_elsewhere) {
+    ClearFolder(folder_);
+    WriteResolvedConfig(run.scenario.params, folder_);
+    CopyRecords(run.folder, folder_);
+  }
+  try {
+    train_dynamics::ByteReader checkpoint(run.checkpoint.output);
+    const train_dynamics::Bytes bag = checkpoint.Block(), csv = checkpoint.Block();
+    const int vehicles = run.scenario.consist.vehicles();
+    if (!csv.empty()) csv_ = std::make_unique<CsvRecorder>(folder_, csv, vehicles);
+    if (!bag.empty()) bag_ = std::make_unique<BagRecorder>((folder_ / kBag).string(), bag, vehicles);
+  } catch (const train_dynamics::SnapshotError& e) {
+    throw std::invalid_argument((run.folder / kCheckpointFile).string() + " " + e.what());
+  }
+  // Both have seen that they can: nothing was changed before.
+  if (csv_ != nullptr) csv_->GoOn();
+  if (bag_ != nullptr) bag_->GoOn();
+  if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
+  for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
+  StartThread();
+}
+
+void RunOutput::StartThread() {
+  if (bag_ == nullptr && csv_ == nullptr) return;
+  thread_ = std::make_unique<RecorderThread>([this](const train_dynamics::TrainRecord& record) {
+    if (bag_ != nullptr) bag_->Record(record);
+    if (csv_ != nullptr) csv_->Record(record);
+  });
+}
+
+template <class Action>
+void RunOutput::Attempt(const Action& action) {
+  if (error_ != nullptr) return;
+  try {
+    action();
+  } catch (const std::exception& e) {
+    if (options_.on_write_error == OnWriteError::kStop) throw;
+    error_ = std::current_exception();
+    options_.complain(fmt::format("{}: the run goes on without records", e.what()));
+  }
+}
+
+void RunOutput::Record(const train_dynamics::TrainRecord& record) {
+  if (thread_ != nullptr) Attempt([&] { thread_->Record(record); });
+}
+
+bool RunOutput::AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted) const {
+  if (folder_.empty() || checkpoint_exchanges_ == 0 || error_ != nullptr || !master.RecordIsNext())
+    return false;
+  const auto next = static_cast<long>(master.exchange()) + 1;
+  if (!wanted && next % checkpoint_exchanges_ != 0 && next != master.exchanges()) return false;
+  master.AskForCheckpoint();
+  return true;
+}
+
+void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
+                               const train_dynamics::RunSummary& summary) {
+  Attempt([&] {
+    if (thread_ != nullptr) thread_->Drain();
+    train_dynamics::ByteWriter output;
+    output.Add(bag_ != nullptr ? bag_->Checkpoint() : train_dynamics::Bytes());
+    output.Add(csv_ != nullptr ? csv_->Checkpoint() : train_dynamics::Bytes());
+    train_dynamics::TrainCheckpoint checkpoint = master.Checkpoint();
+    checkpoint.scenario = identity_;
+    checkpoint.summary = summary.Memory();
+    checkpoint.output = output.bytes();
+    WriteFile(folder_ / kCheckpointFile, TextOf(Encode(checkpoint)));
+  });
+}
+
+void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json) {
+  if (folder_.empty()) return;
+  std::exception_ptr error = error_;
+  const auto attempt = [&error](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception&) {
+      if (error == nullptr) error = std::current_exception();
+    }
+  };
+  if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
+  if (bag_ != nullptr) attempt([&] { bag_->Close(); });
+  attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
+  if (csv_ != nullptr) attempt([&] { csv_->Close(master); });
+  if (error != nullptr) std::rethrow_exception(error);
+}
+
+}  // namespace train_results

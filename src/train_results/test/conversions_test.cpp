@@ -1,0 +1,92 @@
+#include "train_results/conversions.h"
+
+#include <gtest/gtest.h>
+#include <ros/message_traits.h>
+#include <train_brake_msgs/Configure.h>
+#include <train_brake_msgs/Step.h>
+
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace train_results {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// The arrays of 64-bit or 32-bit floating-point numbers that a message's definition has.
+template <class Message>
+Names ArraysOf() {
+  Names names;
+  std::istringstream definition(ros::message_traits::Definition<Message>::value());
+  for (std::string line; std::getline(definition, line) && line.rfind("====", 0) != 0;) {
+    std::istringstream words(line);
+    std::string type, name;
+    words >> type >> name;
+    if (type == "float64[]" || type == "float32[]") names.insert(name);
+  }
+  return names;
+}
+
+Names RecordNames() {
+  Names names;
+  train_dynamics::RecordArrays record;
+  train_dynamics::ForEachRecordField(
+      [&](const train_dynamics::RecordInfo& field, const auto&) { names.insert(field.name); }, record);
+  return names;
+}
+
+// A field of a list that its message lacks does not compile. The other way round:
+
+TEST(Lists, HaveEveryArrayOfTheRecordOfARank) {
+  Names names = RecordNames();
+  train_dynamics::VehicleEnergy energy;
+  train_dynamics::ForEachEnergy(
+      [&](const train_dynamics::FieldInfo& field, const auto&) { names.insert(field.name); }, energy);
+  EXPECT_EQ(ArraysOf<train_brake_msgs::RankRecord>(), names)
+      << "vehicle/vehicle_record.h and vehicle/work.h list what RankRecord.msg has";
+}
+
+TEST(Lists, HaveEveryArrayOfTheStateOfATrain) {
+  Names names = RecordNames();
+  names.insert("acceleration_mps2");  // the master's
+  EXPECT_EQ(ArraysOf<train_brake_msgs::TrainState>(), names)
+      << "vehicle/vehicle_record.h lists what TrainState.msg has";
+}
+
+TEST(Lists, HaveEveryArrayOfARequestAndItsReply) {
+  Names names = {"coupler_force_n"};
+  train_dynamics::LoadArrays loads;
+  train_dynamics::ForEachLoad(
+      [&](const train_dynamics::LoadInfo& load, const auto&) { names.insert(load.name); }, loads);
+  EXPECT_EQ(ArraysOf<train_brake_msgs::StepRequest>(), names)
+      << "vehicle/vehicle_loads.h lists what Step.srv has";
+  names.clear();
+  train_dynamics::ReplyArrays reply;
+  train_dynamics::ForEachReplyField(
+      [&](const train_dynamics::RecordInfo& field, const auto&) { names.insert(field.name); }, reply);
+  EXPECT_EQ(ArraysOf<train_brake_msgs::StepResponse>(), names)
+      << "vehicle/vehicle_record.h lists what Step.srv has";
+  EXPECT_EQ(ArraysOf<train_brake_msgs::ConfigureResponse>(), names);
+}
+
+TEST(Conversions, TakeEveryQuantityOfARecordToTheState) {
+  train_dynamics::TrainRecord record;
+  record.vehicles = train_dynamics::VehicleRecords(2, {});
+  double number = 1.0;
+  train_dynamics::ForEachRecordField(
+      [&](const train_dynamics::RecordInfo&, auto& array) {
+        for (double& value : array) value = number++;
+      },
+      record.vehicles);
+  train_brake_msgs::TrainState state;
+  Convert(record, state);
+  train_dynamics::ForEachRecordField(
+      [](const train_dynamics::RecordInfo& field, const auto& from, const auto& to) {
+        EXPECT_TRUE(std::equal(from.begin(), from.end(), to.begin(), to.end())) << field.name;
+      },
+      record.vehicles, state);
+}
+
+}  // namespace
+}  // namespace train_results

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace train_sim {
+
+struct CheckOptions {
+  std::string scenario;
+  std::string model;  ///< empty: the scenario's
+  std::string out;    ///< folder for results, for its free space; empty: not asked
+  std::vector<std::string> overrides;
+  int threads = 0;   ///< as in RunOptions
+  int nodes = 0;     ///< wagon nodes; 0: a run in one process
+  int machines = 1;  ///< that share them
+};
+
+/// Checks a scenario, prints what it is and what a run of it will take; what will not work well is a warning with its
+/// place and a remedy.
+/// @throws strict_config::Error
+int CheckScenario(const CheckOptions& options);
+
+}  // namespace train_sim

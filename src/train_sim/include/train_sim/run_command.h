@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/config/load_scenario.h"
+#include "train_run/exit_code.h"
+
+namespace train_sim {
+
+struct RunOptions {
+  std::string scenario;
+  std::string model;   ///< empty: the scenario's
+  std::string out;     ///< empty: nothing is written
+  std::string resume;  ///< folder of a run that goes on from its checkpoint; instead of a scenario
+  double checkpoint_interval_s = 10.0;  ///< of simulated time; 0: none
+  bool go_on_without_records = false;   ///< where results cannot be written
+  std::vector<std::string> overrides;
+  int threads = 0;  ///< 0: one per core for the 2D model, one for LTD
+  bool csv = false;
+};
+
+/// As many as asked for, if any, else one per core; but no more than are useful.
+int Threads(int asked, const train_dynamics::config::LoadedScenario& scenario);
+
+/// Simulates a scenario with all vehicles in this process.
+/// @throws strict_config::Error, std::exception
+int RunScenario(const RunOptions& options);
+
+}  // namespace train_sim

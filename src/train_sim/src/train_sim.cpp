@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+
+#include "strict_config/error_list.h"
+#include "train_sim/check_command.h"
+#include "train_sim/run_command.h"
+#include "train_sim/vehicle_commands.h"
+#include "train_sim/verify_command.h"
+
+namespace {
+
+constexpr const char* kDescription =
+    "Simulates the braking of long trains, all vehicles in this process, without a ROS master.\n"
+    "\n"
+    "  train_sim run config/scenarios/emergency.yaml --out results/emergency\n"
+    "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
+    "  train_sim run --resume results/emergency\n"
+    "  train_sim check my_scenario.yaml\n"
+    "  train_sim verify results/emergency\n"
+    "  train_sim modes config/vehicles/ore_wagon.yaml\n"
+    "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
+    "\n"
+    "Exit codes: 0 done; 1 a result could not be written; 2 bad arguments or configuration; 3 the simulation "
+    "broke\n"
+    "down; 130 interrupted (what was simulated is saved and marked incomplete). Of verify: 0 the same; 5 "
+    "different; 6 "
+    "nothing\n"
+    "can be told; 7 the same as far as the recording goes.";
+
+/// Options shared by the commands that read a file and change it.
+/// @return the file's option
+CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std::string& file,
+                      std::vector<std::string>& overrides) {
+  CLI::Option* input = command->add_option(name, file, help)->required();
+  command
+      ->add_option("--set", overrides,
+                   "replace a value: --set path=value, e.g. train.connection.draft_gear.slack_m=0.02")
+      ->allow_extra_args(false);
+  return input;
+}
+
+int Main(int argc, char** argv) {
+  train_sim::RunOptions options;
+  std::string vehicle;
+  bool table = false;
+  std::function<int()> command;
+
+  CLI::App app(kDescription, "train_sim");
+  app.set_version_flag("--version", "train_sim " TRAIN_BRAKE_VERSION);
+  app.require_subcommand(1);
+
+  CLI::App* run = app.add_subcommand("run", "simulate a scenario; the summary goes to the standard output");
+  AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
+  run->add_option(
+      "--resume", options.resume,
+      "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
+      "--out: a what-if run from there");
+  run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
+                  "simulated time [s] between checkpoints in the folder of --out; 0: none")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  run->add_flag("--go-on-without-records", options.go_on_without_records,
+                "where results cannot be written: run to the end all the same, and end with 1");
+  run->add_option("--model", options.model, "vehicle model; default: the scenario's")
+      ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
+  run->add_option("--out", options.out,
+                  "folder for train.bag, config.yaml and summary.json; default: write nothing");
+  run->add_option("--threads", options.threads,
+                  "threads; any number gives the same bits; default: one per core for 2d, one for ltd")
+      ->check(CLI::Range(1, 1024));
+  run->add_flag("--csv", options.csv,
+                "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
+  run->callback([&] {
+    if (options.scenario.empty() == options.resume.empty())
+      throw CLI::ValidationError("SCENARIO", "give a scenario, or --resume DIR");
+    if (options.csv && !options.resume.empty())
+      throw CLI::ValidationError("--csv", "a run is resumed with the tables that it began with");
+    if (options.csv && options.out.empty())
+      throw CLI::ValidationError("--csv", "needs --out DIR to write into");
+    command = [&] { return train_sim::RunScenario(options); };
+  });
+
+  train_sim::CheckOptions planned;
+  CLI::App* check = app.add_subcommand(
+      "check", "check a scenario with all its parts, print what it is and what a run takes");
+  AddInput(check, "SCENARIO", "scenario file", planned.scenario, planned.overrides);
+  check->add_option("--model", planned.model, "vehicle model; default: the scenario's")
+      ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
+  check->add_option("--out", planned.out, "folder for results: is there room for them?");
+  check->add_option("--threads", planned.threads, "as for run")->check(CLI::Range(1, 1024));
+  check->add_option("--nodes", planned.nodes, "wagon nodes of a distributed run: do they fit?")
+      ->check(CLI::Range(1, 100000));
+  check->add_option("--machines", planned.machines, "machines like this one that share them")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  check->callback([&] { command = [&] { return train_sim::CheckScenario(planned); }; });
+
+  train_sim::VerifyOptions recording;
+  CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");
+  verify->add_option("DIR_OR_BAG", recording.recording, "folder of a run, or bag, also of rosbag record")
+      ->required();
+  verify->add_option("--config", recording.config,
+                     "scenario of the run; default: the folder's or the bag's own");
+  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several");
+  verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")
+      ->check(CLI::Range(1, 1024));
+  verify->callback([&] { command = [&] { return train_sim::Verify(recording); }; });
+
+  CLI::App* modes =
+      app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
+  AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
+  modes->add_flag("--csv", table, "comma-separated, with the shapes");
+  modes->callback(
+      [&] { command = [&] { return train_sim::PrintModes(vehicle, options.overrides, table); }; });
+
+  CLI::App* adhesion =
+      app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");
+  AddInput(adhesion, "VEHICLE", "vehicle file", vehicle, options.overrides);
+  adhesion->add_flag("--csv", table, "comma-separated");
+  adhesion->callback(
+      [&] { command = [&] { return train_sim::PrintAdhesion(vehicle, options.overrides, table); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? train_run::kSuccess : train_run::kBadInput;
+  }
+  return command();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int exit_code = Main(argc, argv);
+    if (std::fflush(stdout) != 0) throw std::runtime_error("the output could not be written");
+    return exit_code;
+  } catch (const strict_config::Error& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return train_run::kBadInput;
+  } catch (const std::invalid_argument& e) {
+    fmt::print(stderr, "train_sim: {}\n", e.what());
+    return train_run::kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "train_sim: {}\n", e.what());
+    return train_run::kFailure;
+  }
+}

@@ -1,0 +1,321 @@
+#include "train_sim/verify_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/train/in_process_train.h"
+#include "train_dynamics/train/run_summary.h"
+#include "train_results/conversions.h"
+#include "train_results/plain_file.h"
+#include "train_results/recorded_message.h"
+#include "train_results/recorded_run.h"
+#include "train_results/resume.h"
+#include "train_run/interrupt.h"
+#include "train_run/progress.h"
+#include "train_sim/run_command.h"
+
+namespace train_sim {
+namespace {
+
+namespace fs = std::filesystem;
+using train_dynamics::ScenarioParams;
+using train_dynamics::TrainRecord;
+using train_dynamics::config::LoadedScenario;
+using train_results::Compare;
+using train_results::Difference;
+using train_results::Presentable;
+using train_results::RecordedRun;
+using train_results::RecordedTopic;
+
+fs::path BagOf(const fs::path& recording) {
+  if (!fs::exists(recording)) throw train_results::UnreadableBag("there is no such file or folder");
+  if (!fs::is_directory(recording)) return recording;
+  if (fs::exists(recording / "train.bag")) return recording / "train.bag";
+  if (fs::exists(recording / "train.bag.active"))
+    return recording / "train.bag.active";  // of a run that was cut off
+  throw train_results::UnreadableBag("the folder holds no train.bag");
+}
+
+fs::path FolderOf(const fs::path& recording) {
+  return fs::is_directory(recording) ? recording : recording.parent_path();
+}
+
+/// Whether what lies in its folder is of the same run: a folder of results, or the bag in it.
+bool IsOfARun(const fs::path& recording) {
+  return fs::is_directory(recording) || recording.filename() == "train.bag";
+}
+
+/// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
+LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
+  using train_dynamics::config::LoadScenario;
+  if (!options.config.empty()) return LoadScenario(options.config, {});
+  const fs::path beside = FolderOf(options.recording) / "config.yaml";
+  const std::optional<std::string> within = recorded.Scenario();
+  if (within && !(IsOfARun(options.recording) && fs::exists(beside))) {
+    return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
+  }
+  if (fs::exists(beside)) return LoadScenario(beside.string(), {});
+  throw train_results::UnreadableBag(
+      "the bag does not hold its scenario, and there is no config.yaml beside it; give it with --config");
+}
+
+/// Where the run left another one, if it did.
+std::optional<train_dynamics::TrainCheckpoint> BranchOf(const fs::path& recording) {
+  const fs::path file = FolderOf(recording) / train_results::kBranchFile;
+  if (!fs::exists(file)) return std::nullopt;
+  return train_results::ReadCheckpoint(file);
+}
+
+/// The vehicles that the bag shows in full detail, from 1.
+std::vector<int> WagonsIn(RecordedRun& recorded, int vehicles) {
+  std::vector<int> wagons;
+  for (int i = 0; i < vehicles; ++i) {
+    if (recorded.wagon(train_dynamics::VehicleName(i, vehicles)) != nullptr) wagons.push_back(i + 1);
+  }
+  return wagons;
+}
+
+/// Compares the records of a repetition with those of the bag, until one differs or the bag ends.
+class Comparison {
+ public:
+  Comparison(RecordedRun& recorded, int vehicles) : recorded_(recorded), vehicles_(vehicles) {}
+
+  /// Leaves out what the bag has up to the checkpoint with which the repetition begins.
+  void BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params);
+
+  /// An observer of the repetition's TrainMaster.
+  void Observe(const TrainRecord& record);
+
+  bool Differs() const { return !differences_.empty(); }
+  bool Finished() const { return Differs() || recorded_.state().done(); }
+  long records() const { return records_; }  ///< that are the same
+  /// What the bag has of other topics less than of the state, as text; empty: nothing.
+  std::string Missing() const;
+  /// The first record that differs, the vehicle and the quantity.
+  std::string Verdict() const;
+
+ private:
+  template <class Message, class Make>
+  void Check(RecordedTopic* topic, const TrainRecord& record, Message& message, const Make& make);
+  void CheckWagons(const TrainRecord& record);
+
+  RecordedRun& recorded_;
+  const int vehicles_;
+  long records_ = 0;
+  bool is_recorded_ = false;  ///< the state at the last record
+  double initial_j_ = 0.0;
+  double time_s_ = 0.0;         ///< of the last record
+  std::uint64_t exchange_ = 0;  ///< of the last record
+  std::vector<Difference> differences_;
+  std::map<std::string, long> missing_;  ///< messages, by topic
+
+  train_brake_msgs::TrainState state_;
+  train_brake_msgs::InTrainForces forces_;
+  train_brake_msgs::BrakePressures pressures_;
+  train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::WagonState wagon_;
+};
+
+/// Compares what the topic has about this record with the message that `make` fills, if one is due.
+template <class Message, class Make>
+void Comparison::Check(RecordedTopic* topic, const TrainRecord& record, Message& message, const Make& make) {
+  if (topic == nullptr) return;
+  const bool is_there = !topic->done() && topic->exchange() <= record.exchange;
+  if (!is_there && is_recorded_ && make(message)) ++missing_[topic->name()];
+  for (; !topic->done() && topic->exchange() <= record.exchange; topic->Advance()) {
+    if (topic->exchange() == record.exchange && make(message)) {
+      const std::vector<Difference> found = Compare(topic->message(), message);
+      differences_.insert(differences_.end(), found.begin(), found.end());
+    } else {
+      differences_.push_back({0, "",
+                              fmt::format("{} has a message of exchange {}, of which there is none now",
+                                          topic->name(), topic->exchange())});
+    }
+  }
+}
+
+void Comparison::CheckWagons(const TrainRecord& record) {
+  for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
+    Check(recorded_.wagon(train_dynamics::VehicleName(detail.vehicle, vehicles_)), record, wagon_,
+          [&](auto& message) {
+            train_results::Convert(record, detail, message);
+            return true;
+          });
+  }
+}
+
+void Comparison::BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params) {
+  train_dynamics::RunSummary summary(params);
+  summary.SetMemory(checkpoint.summary);
+  initial_j_ = summary.initial_energy_j();
+  std::vector<RecordedTopic*> topics = {&recorded_.state(), recorded_.forces(), recorded_.pressures(),
+                                        recorded_.ledger()};
+  for (const int vehicle : params.detail_vehicles) {
+    topics.push_back(recorded_.wagon(train_dynamics::VehicleName(vehicle - 1, vehicles_)));
+  }
+  for (RecordedTopic* topic : topics) {
+    while (topic != nullptr && !topic->done() && topic->exchange() <= checkpoint.exchange) topic->Advance();
+  }
+}
+
+void Comparison::Observe(const TrainRecord& record) {
+  if (Finished()) return;
+  const auto convert = [&](auto& message) {
+    train_results::Convert(record, message);
+    return true;
+  };
+  if (record.exchange == 0) initial_j_ = record.ledger->Stored();
+  time_s_ = record.time_s;
+  exchange_ = record.exchange;
+  is_recorded_ = recorded_.state().exchange() == record.exchange;
+  CheckWagons(record);
+  Check(&recorded_.state(), record, state_, convert);
+  Check(recorded_.pressures(), record, pressures_, convert);
+  Check(recorded_.forces(), record, forces_, convert);
+  Check(recorded_.ledger(), record, ledger_, [&](auto& message) {
+    if (record.ledger) train_results::Convert(record, *record.ledger, initial_j_, message);
+    return record.ledger.has_value();
+  });
+  if (is_recorded_ && !Differs()) ++records_;
+}
+
+std::string Comparison::Missing() const {
+  std::string text;
+  for (const auto& [topic, count] : missing_) {
+    text += fmt::format("  not in the bag: {} message(s) of {}\n", count, topic);
+  }
+  return text;
+}
+
+std::string Comparison::Verdict() const {
+  const auto is_digest = [](const Difference& each) {
+    return each.quantity == "vehicle_digest" || each.quantity == "state_digest";
+  };
+  const auto is_vehicle = [](const Difference& each) { return each.quantity == "vehicle_digest"; };
+  const auto first = std::find_if(differences_.begin(), differences_.end(), is_vehicle);
+  const int vehicle = first == differences_.end() ? 0 : first->vehicle;
+  const auto value = std::find_if(differences_.begin(), differences_.end(), [&](const Difference& each) {
+    return !is_digest(each) && (vehicle == 0 || each.vehicle == vehicle);
+  });
+  std::string what =
+      "the chain of digests, but no recorded value: the memory of a draft gear, or an earlier record";
+  if (value != differences_.end()) {
+    what = value->text;
+  } else if (vehicle > 0) {
+    what =
+        fmt::format("vehicle {}: its state, but no recorded value (detail_vehicles: [{}] records them all)",
+                    vehicle, vehicle);
+  }
+  return fmt::format(
+      "different: the first record that differs is that of {:g} s (exchange {})\n"
+      "  {}\n"
+      "  {} of {} vehicles differ in it; the {} records before it are the same\n",
+      time_s_, exchange_, Presentable(what),
+      std::count_if(differences_.begin(), differences_.end(), is_vehicle), vehicles_, records_);
+}
+
+/// The digest in the summary.json of a whole run, where the recording is such a run's; else nothing.
+std::optional<std::string> DigestInSummary(const fs::path& recording) {
+  const fs::path file = FolderOf(recording) / "summary.json";
+  if (!IsOfARun(recording) || !fs::exists(file)) return std::nullopt;
+  const std::string text = train_results::ReadPlainFile(file, 1 << 20);
+  static const std::regex pattern("\"complete\": true[^]*\"state_digest\": \"([0-9a-f]*)\"");
+  std::smatch match;
+  if (!std::regex_search(text, match, pattern)) return std::nullopt;
+  return match[1];
+}
+
+int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
+  LoadedScenario scenario = ScenarioOf(options, recorded);
+  scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
+  const ScenarioParams& params = scenario.params;
+  train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
+  train_dynamics::TrainMaster master(params, scenario.consist, vehicles, scenario.pressures);
+  Comparison comparison(recorded, scenario.consist.vehicles());
+  const std::optional<train_dynamics::TrainCheckpoint> branch = BranchOf(options.recording);
+  const std::uint64_t first = branch ? branch->exchange : 0;
+  const double start_s = static_cast<double>(first) * params.exchange_interval_s;
+  train_run::Progress progress(params.duration_s, start_s);
+  master.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
+  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
+
+  train_run::CatchInterrupts();
+  std::string fault;
+  try {
+    if (branch) {
+      comparison.BeginAt(*branch, params);
+      master.Resume(*branch);
+    } else {
+      master.Start();
+    }
+    while (!master.Done() && !comparison.Finished() && train_run::Interrupt() == 0) master.Exchange();
+  } catch (const train_dynamics::SimulationFault& e) {
+    fault = e.what();
+  }
+  progress.Finish();
+
+  if (comparison.Differs()) {
+    fmt::print("{}", comparison.Verdict());
+    return train_run::kDifferent;
+  }
+  if (!fault.empty()) {
+    fmt::print("different: the repetition breaks down, where the bag goes on: {}\n", fault);
+    return train_run::kDifferent;
+  }
+  if (!comparison.Finished()) {
+    if (train_run::Interrupt() == 0) {
+      fmt::print("different: the bag goes on after the end at {:g} s\n", params.duration_s);
+      return train_run::kDifferent;
+    }
+    fmt::print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
+    return train_run::kInterrupted;
+  }
+  const long all =
+      (params.Exchanges() - static_cast<long>(first)) / params.ExchangesPerRecord() + (branch ? 0 : 1);
+  const char* const covered =
+      comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
+  if (!master.Done()) {
+    fmt::print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n", master.time_s(),
+               params.duration_s, comparison.records());
+    return train_run::kIncomplete;
+  }
+  const std::string digest = fmt::format("{:016x}", master.state_digest());
+  const std::string summarised = DigestInSummary(options.recording).value_or(digest);
+  if (summarised != digest) {
+    fmt::print("different: the records are the same, but summary.json has the digest {}, now it is {}\n",
+               Presentable(summarised), digest);
+    return train_run::kDifferent;
+  }
+  const std::string begin = branch ? fmt::format("from {:g} s, where it left another run, ", start_s) : "";
+  fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
+             scenario.consist.vehicles(), begin, params.duration_s, digest, covered, comparison.Missing());
+  return train_run::kSuccess;
+}
+
+int Unreadable(const std::string& recording, const std::string& why) {
+  fmt::print(stderr, "train_sim: {} cannot be verified: {}\n", recording, Presentable(why));
+  return train_run::kUnreadable;
+}
+
+}  // namespace
+
+int Verify(const VerifyOptions& options) {
+  try {
+    RecordedRun recorded(BagOf(options.recording), options.train);
+    return Repeat(options, recorded);
+  } catch (const std::exception& e) {
+    return Unreadable(options.recording, e.what());
+  }
+}
+
+}  // namespace train_sim
