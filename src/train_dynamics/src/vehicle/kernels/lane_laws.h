@@ -43,24 +43,39 @@ void StoreNumbers(const std::array<T, n>& values, double* place) {
   }
 }
 
-/// Loads of a pack from the place of its first vehicle on. What acts on no vehicle of the train is zero.
+/// Whether a load that few trains have is given.
 template <class T>
+bool HasRareLoads(const LoadPlaces& places) {
+  bool has = false;
+  ForEachLoad([&has](const LoadInfo& load,
+                     const double* place) { has |= load.given == Given::kWhereUsed && place != nullptr; },
+              places);
+  return has;
+}
+
+/// Loads of a pack from the place of its first vehicle on. What acts on no vehicle of the train is zero.
+/// @tparam with_rare  false: those that few trains have are zero where it is compiled, so that their terms cost nothing
+template <class T, bool with_rare>
 VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
   VehicleLoads<T> loads{};
   loads.front_coupler_n = Load<T>(places.front_coupler_n + first);
   loads.rear_coupler_n = Load<T>(places.rear_coupler_n + first);
   ForEachLoad(
-      [first](const LoadInfo& /*load*/, const double* place, T& value) {
-        if (place != nullptr) value = Load<T>(place + first);
+      [first](const LoadInfo& load, const double* place, T& value) {
+        if (load.given == Given::kAlways) {
+          value = Load<T>(place + first);
+        } else if (with_rare && place != nullptr) {
+          value = Load<T>(place + first);
+        }
       },
       places, loads);
   return loads;
 }
 
-template <class T, class Vehicle>
-[[gnu::flatten]] bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
-                                const LoadPlaces& load_places, const ReplyPlaces& reply_places,
-                                std::byte* states, std::byte* outputs) {
+template <class T, bool with_rare, class Vehicle>
+[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
+                                     int packs, const LoadPlaces& load_places,
+                                     const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
   static_assert(sizeof(State) == kLanesOf<T> * sizeof(typename Vehicle::template State<double>) &&
@@ -71,7 +86,7 @@ template <class T, class Vehicle>
     const int first = i * kLanesOf<T>;
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
-    const VehicleLoads<T> loads = LoadsAt<T>(load_places, first);
+    const VehicleLoads<T> loads = LoadsAt<T, with_rare>(load_places, first);
     for (int step = 1; step < steps; ++step) {
       Step(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
     }
@@ -83,6 +98,14 @@ template <class T, class Vehicle>
     sound = sound & IsSound(vehicle, track, pack);
   }
   return AllOf(sound);
+}
+
+template <class T, class Vehicle>
+bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
+               const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+  const auto step =
+      HasRareLoads<T>(loads) ? &StepPacksUnder<T, true, Vehicle> : &StepPacksUnder<T, false, Vehicle>;
+  return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
 }
 
 template <class T, class Vehicle>
