@@ -24,11 +24,11 @@ LiveTopics::LiveTopics(const ros::NodeHandle& node)
 
 void LiveTopics::Show(const train_dynamics::TrainRecord& record, const Pace& pace) {
   if (record.exchange == 0) start_position_m_ = record.mean_position_m;
+  // Always kept: the run may be paused before the next one, and somebody may come then.
+  last_ = record;
+  has_record_ = held_back_ = true;
   const Clock::time_point now = Clock::now();
-  const bool due = now >= next_;
-  if (!due && !HasListeners()) return;
-  Keep(record);
-  if (!due) return;
+  if (now < next_) return;
   next_ = std::max(next_ + kPeriod, now);
   Publish(pace);
 }
@@ -39,16 +39,21 @@ void LiveTopics::Settle(const Pace& pace) {
   if (held_back_ || !same) Publish(pace);
 }
 
-bool LiveTopics::HasListeners() const {
-  return status_publisher_.getNumSubscribers() > 0 || state_publisher_.getNumSubscribers() > 0;
+std::optional<train_dynamics::TrainRecord> LiveTopics::last() const {
+  return has_record_ ? std::make_optional(last_) : std::nullopt;
 }
 
-void LiveTopics::Keep(const train_dynamics::TrainRecord& record) {
+void LiveTopics::Publish(const Pace& pace) {
+  status_.state = pace.state;
+  status_.real_time_factor = pace.real_time_factor;
+  status_.wanted_real_time_factor = pace.wanted_real_time_factor;
+  if (has_record_) PublishRecord(last_);
+  status_publisher_.publish(status_);
+  held_back_ = false;
+}
+
+void LiveTopics::PublishRecord(const train_dynamics::TrainRecord& record) {
   train_results::Convert(record, state_);
-  train_results::Convert(record, forces_);
-  train_results::Convert(record, pressures_);
-  for (const train_dynamics::WagonDetail& detail : record.vehicles.details)
-    train_results::Convert(record, detail, wagons_[detail.vehicle]);
   status_.header.stamp = state_.header.stamp;
   status_.exchange = record.exchange;
   status_.mean_speed_mps = record.mean_speed_mps;
@@ -58,26 +63,20 @@ void LiveTopics::Keep(const train_dynamics::TrainRecord& record) {
       std::minmax_element(record.held.coupler_force_n.begin(), record.held.coupler_force_n.end());
   status_.max_tension_n = *largest;
   status_.max_compression_n = *smallest;
-  held_back_ = true;
-}
-
-void LiveTopics::Publish(const Pace& pace) {
-  held_back_ = false;
-  status_.state = pace.state;
-  status_.real_time_factor = pace.real_time_factor;
-  status_.wanted_real_time_factor = pace.wanted_real_time_factor;
-  status_publisher_.publish(status_);
+  if (!held_back_) return;  // only the pace has changed
+  train_results::Convert(record, forces_);
+  train_results::Convert(record, pressures_);
   state_publisher_.publish(state_);
   forces_publisher_.publish(forces_);
   pressures_publisher_.publish(pressures_);
-  for (const auto& [vehicle, state] : wagons_) {
-    ros::Publisher& publisher = wagon_publishers_[vehicle];
-    if (!publisher) {
-      const int vehicles = static_cast<int>(state_.position_m.size());
-      publisher = Latched<train_brake_msgs::WagonState>(
-          node_, train_dynamics::VehicleName(vehicle, vehicles) + "/state");
-    }
-    publisher.publish(state);
+  const int vehicles = static_cast<int>(state_.position_m.size());
+  for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
+    ros::Publisher& publisher = wagon_publishers_[detail.vehicle];
+    if (!publisher)
+      publisher =
+          Latched<train_brake_msgs::WagonState>(node_, train_dynamics::VehicleName(detail.vehicle, vehicles) + "/state");
+    train_results::Convert(record, detail, wagon_);
+    publisher.publish(wagon_);
   }
 }
 

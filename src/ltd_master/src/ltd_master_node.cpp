@@ -1,12 +1,20 @@
+#include <fmt/format.h>
 #include <ros/master.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "ltd_master/master_node.h"
 #include "strict_config/error_list.h"
+#include "train_node/caller.h"
+#include "train_node/node_parameters.h"
+#include "train_node/occupant.h"
+#include "train_node/start.h"
 #include "train_run/exit_code.h"
 #include "train_run/interrupt.h"
 
@@ -22,23 +30,61 @@ bool WaitForRosMaster() {
   return true;
 }
 
-int Run(const ltd_master::MasterOptions& options, const ros::NodeHandle& own) {
-  ltd_master::MasterNode master(options, ros::NodeHandle(), own);
-  return master.Run();
+/// Ends this process before it ends the run of another one, whose name it would take.
+void RefuseTakenName() {
+  using train_node::Occupant;
+  const Occupant other = train_node::FindOccupantOfOwnName();
+  if (other.state == Occupant::State::kNone) return;
+  const std::string about = other.state == Occupant::State::kSilent
+                                ? "it does not answer; stopped, or in a debugger"
+                            : other.about.empty() ? "it is starting"
+                                                  : other.about;
+  throw std::invalid_argument(fmt::format(
+      "{0} runs already under the ROS master {1}, on {2}: {3}. It goes on, and nothing was started here. "
+      "A second train needs a namespace of its own, which its topics and services get, too:\n"
+      "  ROS_NAMESPACE=north roslaunch train_brake ...    # /north{0}",
+      ros::this_node::getName(), ros::master::getURI(), other.host, about));
+}
+
+/// What was left on the ROS master by others, and is used by a node that was started by hand.
+void TellStaleParameters(const train_node::NodeParameters& parameters,
+                         const std::vector<std::string>& arguments) {
+  std::vector<std::string> stale;
+  for (const std::string& name : parameters.Names()) {
+    const std::string given = "_" + name + ":=";
+    const auto is_given = [&](const std::string& argument) {
+      return argument.rfind(given, 0) == 0 ||
+             argument.rfind("__log:=", 0) == 0;  // roslaunch gives a log, and all of them
+    };
+    if (std::none_of(arguments.begin(), arguments.end(), is_given)) stale.push_back(name);
+  }
+  if (stale.empty()) return;
+  ROS_WARN(
+      "these parameters were on the ROS master before, and are used: %s (rosparam delete %s forgets them)",
+      fmt::format("{}", fmt::join(stale, ", ")).c_str(), ros::this_node::getName().c_str());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "ltd_master", ros::init_options::NoSigintHandler);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  train_node::InitWithWallTime(argc, argv, "ltd_master", ros::init_options::NoSigintHandler);
   train_run::CatchInterrupts();
   if (!WaitForRosMaster()) return train_run::kInterrupted;
-  const ros::NodeHandle own("~");  // the node and its log end with the last handle: this one
-  int exit_code = train_run::kFailure;
+  train_node::NodeParameters parameters(ros::this_node::getName());
   // First of all parameters: that one of the others is wrong is told there, too.
-  const auto exit_status_file = own.param<std::string>("exit_status_file", "");
+  std::string exit_status_file = parameters.Text("exit_status_file", "");
+  std::optional<ros::NodeHandle> own;  // the node and its log end with the last handle: this one
+  int exit_code = train_run::kFailure;
   try {
-    exit_code = Run(ltd_master::MasterOptions::FromParameters(own), own);
+    train_node::EnterCallerFolder();
+    exit_status_file = train_node::ExpandHome(exit_status_file);
+    RefuseTakenName();
+    own.emplace("~");
+    TellStaleParameters(parameters, arguments);
+    const auto options =
+        ltd_master::MasterOptions::FromParameters(parameters, ros::this_node::getNamespace());
+    exit_code = ltd_master::MasterNode(options, ros::NodeHandle(), *own).Run();
   } catch (const strict_config::Error& e) {
     ROS_FATAL("bad configuration:\n%s", e.what());
     exit_code = train_run::kBadInput;

@@ -1,18 +1,22 @@
 #include "ltd_master/master_node.h"
 
 #include <fmt/format.h>
-#include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
+#include <filesystem>
 #include <random>
 #include <sstream>
 #include <stdexcept>
 
+#include "ltd_master/settings.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_node/caller.h"
+#include "train_node/occupant.h"
 #include "train_run/exit_code.h"
 #include "train_run/interrupt.h"
 
@@ -31,6 +35,33 @@ std::vector<std::string> Words(const std::string& text) {
   return words;
 }
 
+/// "2026-11-28 09:30:00", as clocks on all machines of a train have it.
+std::string UtcText(const ros::WallTime& time) {
+  const auto seconds = static_cast<std::time_t>(time.sec);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  const std::size_t size = std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &parts);
+  return {text, size};
+}
+
+/// Converts a record when the message is wanted.
+template <class Message>
+auto As(const TrainRecord& record, Message& message) {
+  return [&record, &message]() -> const Message& {
+    train_results::Convert(record, message);
+    return message;
+  };
+}
+
+template <class Response>
+void Answer(const RunControl::Reply& reply, Response& response) {
+  response.success = reply.success;
+  response.message = reply.message;
+}
+
+constexpr int kQueue = 100;  // one second of simulated time
+
 /// Unlike that of any other run, so that what a late process of another one sends can be told apart; random, so that
 /// nobody guesses it.
 std::uint64_t NewRunId() {
@@ -38,56 +69,46 @@ std::uint64_t NewRunId() {
   return (static_cast<std::uint64_t>(random()) << 32 | random()) | 1u;
 }
 
-double NonNegative(const ros::NodeHandle& parameters, const std::string& name, double fallback) {
-  const double value = parameters.param(name, fallback);
-  if (!(value >= 0.0))
-    throw std::invalid_argument(fmt::format("parameter {} must be >= 0, got {}", name, value));
-  return value;
-}
-
-/// Whether a parameter is the first of its two words, which is also its default.
-bool OneOf(const ros::NodeHandle& parameters, const char* name, const std::string& first,
-           const std::string& second) {
-  const std::string value = parameters.param<std::string>(name, first);
-  if (value != first && value != second) {
-    throw std::invalid_argument(
-        fmt::format("parameter {} must be {} or {}, got {}", name, first, second, value));
-  }
-  return value == first;
-}
-
 }  // namespace
 
-MasterOptions MasterOptions::FromParameters(const ros::NodeHandle& parameters) {
+MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& parameters,
+                                            const std::string& train_namespace) {
+  using train_node::ExpandHome;
   MasterOptions options;
-  options.resume = parameters.param<std::string>("resume", "");
-  if (options.resume.empty() && !parameters.getParam("scenario", options.scenario)) {
+  options.resume = ExpandHome(parameters.Text("resume", ""));
+  options.scenario = ExpandHome(parameters.Text("scenario", ""));
+  options.vehicles = parameters.Integer("vehicles", 0, 0);
+  options.ranks = parameters.Integer("ranks", 0, 0);
+  options.nodes = parameters.Words("nodes");
+  const std::string settings = parameters.Text("set", "");
+  const std::string model = parameters.Text("model", "");
+  const double interval_s = parameters.NonNegative("exchange_interval_s", 0.0);
+  const std::vector<std::string> detail = Words(parameters.Words("detail"));
+  options.output.folder = ExpandHome(parameters.Text("out", ""));
+  options.output.record_bag = parameters.Flag("record", true);
+  options.output.checkpoint_interval_s = parameters.NonNegative("checkpoint_interval_s", 10.0);
+  options.output.on_write_error =
+      parameters.IsFirstOf("on_write_error", "stop", "go_on") ? train_results::OnWriteError::kStop : train_results::OnWriteError::kGoOn;
+  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
+  options.real_time_factor = parameters.NonNegative("real_time_factor", 0.0);
+  options.start_paused = parameters.Flag("start_paused", false);
+  options.startup_timeout_s = parameters.NonNegative("startup_timeout_s", 60.0);
+  options.exchange_timeout_s = parameters.NonNegative("exchange_timeout_s", 30.0);
+  options.recover = parameters.IsFirstOf("on_lost_node", "recover", "stop");
+  options.recovery_timeout_s = parameters.NonNegative("recovery_timeout_s", 60.0);
+  options.shared_memory = parameters.Flag("shared_memory", true);
+  const std::string global_clock = parameters.Choice("global_clock", {"auto", "true", "false"});
+  options.global_clock =
+      global_clock == "auto" ? SimulatedClock::OwnsGlobalClock(train_namespace) : global_clock == "true";
+  parameters.ThrowIfWrong();
+  if (options.scenario.empty() && options.resume.empty())
     throw std::invalid_argument("parameter scenario is missing: the scenario file to run");
-  }
-  options.vehicles = parameters.param("vehicles", 0);
-  options.ranks = parameters.param("ranks", 0);
-  options.overrides = Words(parameters.param<std::string>("set", ""));
-  const std::string model = parameters.param<std::string>("model", "");
+
+  options.overrides = SplitSettings(settings);
   if (!model.empty()) options.overrides.push_back("model=" + model);
-  const double interval_s = NonNegative(parameters, "exchange_interval_s", 0.0);
   if (interval_s > 0.0) options.overrides.push_back(fmt::format("exchange_interval_s={}", interval_s));
-  const std::vector<std::string> detail = Words(parameters.param<std::string>("detail", ""));
   if (!detail.empty())
     options.overrides.push_back(fmt::format("detail_vehicles=[{}]", fmt::join(detail, ", ")));
-  options.output.folder = parameters.param<std::string>("out", "");
-  options.output.record_bag = parameters.param("record", true);
-  options.output.checkpoint_interval_s = NonNegative(parameters, "checkpoint_interval_s", 10.0);
-  options.output.on_write_error = OneOf(parameters, "on_write_error", "stop", "go_on")
-                                      ? train_results::OnWriteError::kStop
-                                      : train_results::OnWriteError::kGoOn;
-  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
-  options.real_time_factor = NonNegative(parameters, "real_time_factor", 0.0);
-  options.start_paused = parameters.param("start_paused", false);
-  options.startup_timeout_s = NonNegative(parameters, "startup_timeout_s", 60.0);
-  options.exchange_timeout_s = NonNegative(parameters, "exchange_timeout_s", 30.0);
-  options.recover = OneOf(parameters, "on_lost_node", "recover", "stop");
-  options.recovery_timeout_s = NonNegative(parameters, "recovery_timeout_s", 60.0);
-  options.shared_memory = parameters.param("shared_memory", true);
   return options;
 }
 
@@ -99,7 +120,11 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
       scenario_(resumed_ ? resumed_->scenario
                          : train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
       control_(options.start_paused, options.real_time_factor),
-      live_(node) {
+      live_(node),
+      clock_(node, options.global_clock),
+      state_topic_(node, "state", kQueue),
+      forces_topic_(node, "in_train_forces", kQueue),
+      pressures_topic_(node, "brake_pressures", kQueue) {
   for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
   const int vehicles = scenario_.consist.vehicles();
   if (options.vehicles != 0 && options.vehicles != vehicles) {
@@ -112,19 +137,41 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
     throw std::invalid_argument(fmt::format(
         "parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
   }
-  constexpr int kQueue = 100;  // one second of simulated time
-  state_publisher_ = node.advertise<train_brake_msgs::TrainState>("state", kQueue);
-  forces_publisher_ = node.advertise<train_brake_msgs::InTrainForces>("in_train_forces", kQueue);
-  pressures_publisher_ = node.advertise<train_brake_msgs::BrakePressures>("brake_pressures", kQueue);
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
-  scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
-  scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
-  clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue);
+  scenario_publisher_ = node.advertise<std_msgs::String>(kScenarioTopic, 1, true);
+  scenario_publisher_.publish(ScenarioMessage(scenario_.params));
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
   services_.push_back(own.advertiseService("resume", &MasterNode::OnResume, this));
   services_.push_back(own.advertiseService("step", &MasterNode::OnStep, this));
   services_.push_back(own.advertiseService("set_real_time_factor", &MasterNode::OnSetRealTimeFactor, this));
+  services_.push_back(own.advertiseService(train_node::kIdentifyService, &MasterNode::OnIdentify, this));
+  TellWhatIsNotUsed();
+
+  std::map<std::string, std::string> services;
+  for (const ros::ServiceServer& service : services_) services[service.getService()] = "";
+  constexpr std::chrono::seconds kPeriod(1);
+  registration_ =
+      std::make_unique<train_node::RegistrationWatch>(kPeriod, services, [this] { clock_.TellUse(); });
+}
+
+/// What the user has given and this run does not use, and where its results go.
+void MasterNode::TellWhatIsNotUsed() const {
+  if (!options_.nodes.empty() && options_.nodes != "auto" &&
+      options_.nodes != std::to_string(options_.ranks)) {
+    ROS_WARN("nodes:=%s is not used: %s", options_.nodes.c_str(),
+             scenario_.params.model == train_dynamics::VehicleModel::kTwoD
+                 ? fmt::format("the train has {} vehicles and runs on {} wagon nodes",
+                               scenario_.consist.vehicles(), options_.ranks)
+                       .c_str()
+                 : "trains of the LTD models run in the master alone");
+  }
+  const std::string& folder = options_.output.folder.empty() ? options_.resume : options_.output.folder;
+  if (folder.empty()) {
+    ROS_INFO("no results are kept (out:=FOLDER keeps them)");
+  } else {
+    ROS_INFO("results go to %s", std::filesystem::absolute(folder).lexically_normal().c_str());
+  }
 }
 
 std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
@@ -170,7 +217,7 @@ int MasterNode::Run() {
     progress->Show(record.time_s, record.mean_speed_mps);
   });
 
-  ros::AsyncSpinner spinner(2);  // a step may wait while another service is called
+  ros::AsyncSpinner spinner(4);  // steps and a pause may wait while another service is called
   spinner.start();
   std::string fault;
   int exit_code = train_run::kSuccess;
@@ -226,6 +273,7 @@ void MasterNode::Loop(TrainMaster& master, train_results::RunOutput& output,
   } else {
     master.Start();
   }
+  if (control_.paused()) Settle(master.time_s());
   Clock::time_point last_diagnostics = Clock::now();
   double simulated_then_s = master.time_s();
   while (!master.Done() && !Ending()) {
@@ -240,9 +288,9 @@ void MasterNode::Loop(TrainMaster& master, train_results::RunOutput& output,
         if (ranks_->timing().was_late) ++late_exchanges_;
       }
       simulated_s_ = master.time_s();
-      control_.Completed();
+      control_.Completed(master.time_s());
     } else {
-      live_.Settle(PaceNow());
+      Settle(master.time_s());
     }
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
     if (elapsed_s >= 1.0) {
@@ -290,20 +338,21 @@ void MasterNode::Publish(const TrainRecord& record) {
   live_.Show(record, PaceNow());
 }
 
+void MasterNode::Settle(double simulated_s) {
+  live_.Settle(PaceNow());
+  if (!control_.paused()) return;  // it only keeps to its pace
+  clock_.Settle(simulated_s);
+  const std::optional<TrainRecord> last = live_.last();
+  if (!last) return;
+  state_topic_.Hold(As(*last, state_));
+  forces_topic_.Hold(As(*last, forces_));
+  pressures_topic_.Hold(As(*last, pressures_));
+}
+
 LiveTopics::Pace MasterNode::PaceNow() const {
   using train_brake_msgs::RunStatus;
   const std::uint8_t state = control_.paused() ? RunStatus::PAUSED : RunStatus::RUNNING;
   return {state, real_time_factor_, control_.real_time_factor()};
-}
-
-void MasterNode::PublishClock(double simulated_s) {
-  // /clock at 100 Hz of simulated time, however often records are made.
-  constexpr double kPeriod = 0.01;
-  const double tick = simulated_s / kPeriod;
-  if (std::abs(tick - std::round(tick)) > 1e-6 * std::max(1.0, tick)) return;
-  rosgraph_msgs::Clock clock;
-  clock.clock.fromSec(simulated_s);
-  clock_publisher_.publish(clock);
 }
 
 void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state) {
@@ -337,16 +386,12 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
 }
 
 bool MasterNode::OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  control_.Pause();
-  response.success = true;
-  response.message = fmt::format("paused near {:.3f} s", simulated_s_.load());
+  Answer(control_.Pause(), response);
   return true;
 }
 
 bool MasterNode::OnResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.success = control_.paused();
-  response.message = response.success ? "resumed" : "the train is not paused";
-  control_.Resume();
+  Answer(control_.Resume(), response);
   return true;
 }
 
@@ -355,8 +400,7 @@ bool MasterNode::OnStep(train_brake_msgs::StepExchanges::Request& request,
   if (request.exchanges == 0) {
     response.message = "exchanges must be >= 1, got 0";
   } else {
-    response.success = control_.Step(request.exchanges);
-    if (!response.success) response.message = "the train is not paused, or the run has ended";
+    Answer(control_.Step(request.exchanges), response);
   }
   response.simulated_s = simulated_s_;
   return true;
@@ -365,13 +409,19 @@ bool MasterNode::OnStep(train_brake_msgs::StepExchanges::Request& request,
 bool MasterNode::OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
                                      train_brake_msgs::SetRealTimeFactor::Response& response) {
   const double factor = request.real_time_factor;
-  response.success = factor >= 0.0 && std::isfinite(factor);
-  if (!response.success) {
+  if (factor >= 0.0 && std::isfinite(factor)) {
+    Answer(control_.SetRealTimeFactor(factor), response);
+  } else {
     response.message = fmt::format("real_time_factor must be >= 0, got {}", factor);
-    return true;
   }
-  control_.SetRealTimeFactor(factor);
-  response.message = factor > 0.0 ? fmt::format("{:g} times real time", factor) : "as fast as possible";
+  return true;
+}
+
+bool MasterNode::OnIdentify(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = true;
+  const std::string& source = options_.resume.empty() ? options_.scenario : options_.resume;
+  response.message = fmt::format("{}, since {} UTC, at {:.3f} s of {:g} s", source, UtcText(started_),
+                                 simulated_s_.load(), scenario_.params.duration_s);
   return true;
 }
 

@@ -1,16 +1,31 @@
+#include <ros/this_node.h>
+
 #include <exception>
 
 #include "train_brake_rviz/view_node.h"
+#include "train_node/caller.h"
+#include "train_node/occupant.h"
+#include "train_node/start.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "train_view");
+  constexpr int kBadInput = 2;
+  train_node::InitWithWallTime(argc, argv, "train_view");
+  const std::string name = ros::this_node::getName();
+  const train_node::Occupant other = train_node::FindOccupantOfOwnName();
+  if (other.state == train_node::Occupant::State::kAlive) {
+    ROS_FATAL("%s runs already, on %s: it goes on, and its pictures serve any number of rviz", name.c_str(),
+              other.host.c_str());
+    return kBadInput;
+  }
   const ros::NodeHandle own("~");  // the node and its log end with the last handle: this one
   try {
-    const train_brake_rviz::ViewNode view{ros::NodeHandle(), own};
+    train_node::EnterCallerFolder();
+    train_node::NodeParameters parameters(name);
+    const train_brake_rviz::ViewNode view{ros::NodeHandle(), own, parameters};
     ros::spin();
   } catch (const std::exception& e) {
     ROS_FATAL("%s", e.what());
-    return 1;
+    return kBadInput;
   }
   return 0;
 }

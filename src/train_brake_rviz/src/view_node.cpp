@@ -12,6 +12,7 @@
 #include "train_brake_rviz/board/layout.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/ranks.h"
+#include "train_node/caller.h"
 
 namespace train_brake_rviz {
 namespace {
@@ -27,11 +28,9 @@ std::string QuantityNames() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-double NonNegative(const ros::NodeHandle& parameters, const std::string& name, double fallback) {
-  const double value = parameters.param(name, fallback);
-  if (!(value >= 0.0))
-    throw std::invalid_argument(fmt::format("parameter {} must be >= 0, got {}", name, value));
-  return value;
+/// One tf tree holds all trains under a ROS master, so only one of them can have frames of plain names.
+std::string FramePrefix(const std::string& train_namespace) {
+  return train_namespace == "/train" ? "" : train_namespace.substr(1) + (train_namespace == "/" ? "" : "/");
 }
 
 template <class From>
@@ -42,21 +41,24 @@ std::vector<double> Doubles(const std::vector<From>& values, size_t count) {
 
 }  // namespace
 
-ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own)
-    : train_(train), own_(own), source_(own.param("live", true) ? "live/" : "") {
-  options_.vertical_exaggeration = NonNegative(own_, "vertical_exaggeration", 0.0);
-  options_.motion_exaggeration = NonNegative(own_, "motion_exaggeration", options_.motion_exaggeration);
-  first_vehicle_ = own_.param("vehicle", 0);
-  const std::string quantity = own_.param("quantity", selection_.quantity->name);
+ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own,
+                   train_node::NodeParameters& parameters)
+    : train_(train),
+      own_(own),
+      frame_prefix_(FramePrefix(train.getNamespace())),
+      source_(parameters.Flag("live", true) ? "live/" : "") {
+  options_.vertical_exaggeration = parameters.NonNegative("vertical_exaggeration", 0.0);
+  options_.motion_exaggeration = parameters.NonNegative("motion_exaggeration", options_.motion_exaggeration);
+  first_vehicle_ = parameters.Integer("vehicle", 0);
+  const std::string quantity = parameters.Text("quantity", selection_.quantity->name);
+  const std::string file = train_node::ExpandHome(parameters.Text("scenario", ""));
   selection_.quantity = FindQuantity(quantity);
-  if (selection_.quantity == nullptr) {
-    throw std::invalid_argument(
-        fmt::format("parameter quantity must be one of {}, got {}", QuantityNames(), quantity));
-  }
+  if (selection_.quantity == nullptr) parameters.Complain("quantity", "must be one of " + QuantityNames());
+  parameters.ThrowIfWrong();
 
   geometry_msgs::TransformStamped board;
-  board.header.frame_id = kTrackFrame;
-  board.child_frame_id = kBoardFrame;
+  board.header.frame_id = kBoardFrame;
+  board.child_frame_id = frame_prefix_ + kTrackFrame;
   board.transform.rotation.w = 1.0;
   static_transforms_.sendTransform(board);
 
@@ -65,7 +67,6 @@ ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own)
   select_service_ = own_.advertiseService("select", &ViewNode::OnSelect, this);
   PublishSelection();
 
-  const std::string file = own_.param<std::string>("scenario", "");
   if (!file.empty()) Begin(train_dynamics::config::LoadScenario(file, {}).params);
   constexpr int kQueue = 1;  // only the newest is drawn
   subscribers_ = {
@@ -244,8 +245,8 @@ void ViewNode::PublishTransforms(const Snapshot& snapshot) {
     const double nose_down = -std::atan2(rise, kReach);
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = state_->header.stamp;
-    transform.header.frame_id = kTrackFrame;
-    transform.child_frame_id = train_dynamics::VehicleName(i, board_->vehicles());
+    transform.header.frame_id = frame_prefix_ + kTrackFrame;
+    transform.child_frame_id = frame_prefix_ + train_dynamics::VehicleName(i, board_->vehicles());
     transform.transform.translation.x = position;
     transform.transform.translation.z = (*elevation_)(position);
     transform.transform.rotation.y = std::sin(0.5 * nose_down);

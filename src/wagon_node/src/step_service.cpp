@@ -78,12 +78,16 @@ StepService::~StepService() {
   while (!clients_.empty()) clients_.begin()->second->transport->close();
 }
 
+std::string StepService::uri() const {
+  return "rosrpc://" + ros::network::getHost() + ":" + std::to_string(listener_->getServerPort());
+}
+
 /// Tells the ROS master that the service is there, or is not any more.
 void StepService::Tell(const char* method, bool is_there) const {
   XmlRpc::XmlRpcValue request, response, payload;
   request[0] = ros::this_node::getName();
   request[1] = name_;
-  request[2] = "rosrpc://" + ros::network::getHost() + ":" + std::to_string(listener_->getServerPort());
+  request[2] = uri();
   if (is_there) request[3] = ros::XMLRPCManager::instance()->getServerURI();
   ros::master::execute(method, request, response, payload, is_there);
 }

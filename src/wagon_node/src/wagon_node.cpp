@@ -8,6 +8,7 @@ namespace wagon_node {
 namespace {
 
 constexpr double kTick = 0.25;  // [s] between two looks at whether there is a master, while nothing comes
+constexpr int kQueue = 100;     // one second of simulated time
 constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that waits for its first run
 
 std::string CallerOf(const ros::M_string& connection_header) {
@@ -17,13 +18,22 @@ std::string CallerOf(const ros::M_string& connection_header) {
 
 }  // namespace
 
-WagonNode::WagonNode()
+WagonOptions WagonOptions::FromParameters(train_node::NodeParameters& parameters) {
+  WagonOptions options;
+  options.threads = parameters.Integer("threads", options.threads, 1);
+  options.master_timeout_s = parameters.NonNegative("master_timeout_s", options.master_timeout_s);
+  options.shared_memory = parameters.Flag("shared_memory", options.shared_memory);
+  parameters.ThrowIfWrong();
+  return options;
+}
+
+WagonNode::WagonNode(const WagonOptions& options)
     : private_("~"),
-      server_(private_.param("threads", 1)),
+      server_(options.threads),
       last_contact_(Clock::now()),
       next_question_(last_contact_),
-      timeout_(private_.param("master_timeout_s", 8.0)),
-      may_share_memory_(private_.param("shared_memory", true)) {
+      timeout_(options.master_timeout_s),
+      may_share_memory_(options.shared_memory) {
   ros::AdvertiseServiceOptions configure;
   configure.initBySpecType<ConfigureSpec>("configure",
                                           [this](ConfigureCall& call) { return Configure(call); });
@@ -33,11 +43,16 @@ WagonNode::WagonNode()
   step_ = std::make_unique<StepService>(
       private_.resolveName("step"), [this](std::uint8_t* request, std::uint32_t size,
                                            std::vector<std::uint8_t>& reply) { Step(request, size, reply); });
+  constexpr std::chrono::seconds kPeriod(10);  // rare: there may be hundreds of nodes for one ROS master
+  registration_ = std::make_unique<train_node::RegistrationWatch>(
+      kPeriod, std::map<std::string, std::string>{{configure_.getService(), ""},
+                                                  {private_.resolveName("step"), step_->uri()}});
 }
 
 void WagonNode::Run() {
   while (ros::ok() && !IsLeftAlone()) ServeSlot();
   // Their threads end before what they use is destroyed.
+  registration_.reset();
   step_.reset();
   ros::shutdown();
 }
@@ -59,7 +74,8 @@ bool WagonNode::Configure(ConfigureCall& call) {
   for (const train_brake_msgs::WagonState& detail : call.response->record.details) {
     const std::string name =
         train_dynamics::VehicleName(static_cast<int>(detail.vehicle) - 1, server_.vehicles_in_train());
-    publishers_[detail.vehicle] = node_.advertise<train_brake_msgs::WagonState>(name + "/state", 100);
+    publishers_[detail.vehicle] =
+        node_.advertise<train_brake_msgs::WagonState>(name + "/state", kQueue, true);
   }
   ROS_DEBUG("configured by %s: %s", caller.c_str(), call.response->message.c_str());
   Publish(call.response->record);

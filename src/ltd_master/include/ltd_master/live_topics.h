@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 
 #include "train_results/conversions.h"
 
@@ -28,18 +29,20 @@ class LiveTopics {
 
   explicit LiveTopics(const ros::NodeHandle& node);
 
-  /// An observer of the run's TrainMaster: publishes the record, or holds it back for a moment.
+  /// An observer of the run's TrainMaster: publishes the record, or keeps it until Settle() or the next one.
   void Show(const train_dynamics::TrainRecord& record, const Pace& pace);
 
   /// Publishes what was held back, and the pace if it has changed. For a run that waits or has ended.
   void Settle(const Pace& pace);
 
+  /// The newest record, whether it was published or not; null before the first. Refers to memory of this object.
+  std::optional<train_dynamics::TrainRecord> last() const;
+
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool HasListeners() const;
-  void Keep(const train_dynamics::TrainRecord& record);
   void Publish(const Pace& pace);
+  void PublishRecord(const train_dynamics::TrainRecord& record);
 
   ros::NodeHandle node_;
   ros::Publisher status_publisher_, state_publisher_, forces_publisher_, pressures_publisher_;
@@ -48,7 +51,9 @@ class LiveTopics {
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
-  std::map<int, train_brake_msgs::WagonState> wagons_;
+  train_brake_msgs::WagonState wagon_;
+  train_dynamics::TrainRecord last_;
+  bool has_record_ = false;
   double start_position_m_ = 0.0;  ///< of the train's centre of mass
   bool held_back_ = false;
   Clock::time_point next_;

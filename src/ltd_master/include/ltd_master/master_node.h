@@ -17,9 +17,13 @@
 #include "ltd_master/exchange_statistics.h"
 #include "ltd_master/live_topics.h"
 #include "ltd_master/ranks/ros_transport.h"
+#include "ltd_master/record_topic.h"
 #include "ltd_master/run_control.h"
+#include "ltd_master/simulated_clock.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/run_summary.h"
+#include "train_node/node_parameters.h"
+#include "train_node/registration.h"
 #include "train_results/conversions.h"
 #include "train_results/run_output.h"
 #include "train_run/progress.h"
@@ -31,6 +35,9 @@ struct MasterOptions {
   std::string scenario;
   int vehicles = 0;  ///< that the launch file expects in the train; 0 = any number
   int ranks = 0;     ///< wagon nodes; 0 = the vehicles are in the master's own process
+  std::string
+      nodes;  ///< wagon nodes that the user of the launch file has asked for; "auto" or empty: any number
+  bool global_clock = true;  ///< this train's time is also that of /clock
   std::vector<std::string> overrides;
   train_results::OutputOptions output;
   std::string resume;  ///< folder of a run that goes on from its checkpoint
@@ -42,15 +49,18 @@ struct MasterOptions {
   double recovery_timeout_s = 60.0;
   bool shared_memory = true;
 
-  /// @throws std::invalid_argument naming the parameter
-  static MasterOptions FromParameters(const ros::NodeHandle& parameters);
+  /// @param train_namespace  of the node
+  /// @throws std::invalid_argument naming all parameters that are wrong or not known
+  static MasterOptions FromParameters(train_node::NodeParameters& parameters,
+                                      const std::string& train_namespace);
 };
 
 /// The master of a train as a ROS node: runs it once, publishes and records it, and can be paused.
 ///
-///   publishes   state  in_train_forces  brake_pressures  energy_ledger  (every record)   /clock /diagnostics
+///   publishes   state  in_train_forces  brake_pressures  energy_ledger  (every record)   /diagnostics
+///               clock, /clock (see SimulatedClock)
 ///               scenario (once, with everything resolved)   live/... (see LiveTopics)
-///   services    ~pause  ~resume  ~step  ~set_real_time_factor
+///   services    ~pause  ~resume  ~step  ~set_real_time_factor   ~identify (what runs here, since when)
 class MasterNode {
  public:
   MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own);
@@ -59,6 +69,7 @@ class MasterNode {
   int Run();
 
  private:
+  void TellWhatIsNotUsed() const;
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
   void Loop(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
             train_dynamics::RunSummary& summary);
@@ -66,7 +77,8 @@ class MasterNode {
   void EndWithCheckpoint(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
                          const train_dynamics::RunSummary& summary);
   void Publish(const train_dynamics::TrainRecord& record);
-  void PublishClock(double simulated_s);
+  /// While the train stands: what those need who come now.
+  void Settle(double simulated_s);
   void PublishDiagnostics(const train_dynamics::TrainMaster& master, const char* state);
   LiveTopics::Pace PaceNow() const;
   bool OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
@@ -75,6 +87,7 @@ class MasterNode {
               train_brake_msgs::StepExchanges::Response& response);
   bool OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
                            train_brake_msgs::SetRealTimeFactor::Response& response);
+  bool OnIdentify(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
 
   using Clock = std::chrono::steady_clock;
 
@@ -91,14 +104,19 @@ class MasterNode {
   double real_time_factor_ = 0.0;  ///< over the last second of wall time
   std::atomic<double> simulated_s_{0.0};
 
+  const ros::WallTime started_ = ros::WallTime::now();
   LiveTopics live_;
-  ros::Publisher state_publisher_, forces_publisher_, pressures_publisher_, ledger_publisher_,
-      scenario_publisher_, clock_publisher_, diagnostics_publisher_;
+  SimulatedClock clock_;
+  RecordTopic<train_brake_msgs::TrainState> state_topic_;
+  RecordTopic<train_brake_msgs::InTrainForces> forces_topic_;
+  RecordTopic<train_brake_msgs::BrakePressures> pressures_topic_;
+  ros::Publisher ledger_publisher_, scenario_publisher_, diagnostics_publisher_;
   std::vector<ros::ServiceServer> services_;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
   train_brake_msgs::EnergyLedger ledger_;
+  std::unique_ptr<train_node::RegistrationWatch> registration_;
 };
 
 }  // namespace ltd_master

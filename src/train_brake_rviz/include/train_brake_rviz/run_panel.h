@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ros/subscriber.h>
+#include <ros/this_node.h>
 #include <rviz/panel.h>
 #include <train_brake_msgs/RunStatus.h>
 #include <train_brake_msgs/ViewSelection.h>
@@ -18,7 +19,8 @@ class QSpinBox;
 namespace train_brake_rviz {
 
 /// The controls of a train in rviz, in one row like those of a player: play, pause, step, pace; what colours
-/// the vehicles and which one is followed. The train is the one in the namespace /train.
+/// the vehicles and which one is followed. The train is the one in the namespace of rviz's node, as launched with
+/// it; for an rviz in no namespace, /train.
 ///
 /// The buttons show what the train says of itself (live/status, view/selection), not what was pressed last.
 /// Messages must arrive in the window's thread, as they do in rviz.
@@ -44,7 +46,7 @@ class RunPanel : public rviz::Panel {
   QComboBox *quantity_, *vehicle_;
   QLabel* message_;
 
-  ros::NodeHandle train_{"/train"};
+  ros::NodeHandle train_{ros::this_node::getNamespace() == "/" ? "/train" : ros::this_node::getNamespace()};
   RunClient client_{train_};
   ros::Subscriber status_, selection_;
   Worker worker_;  ///< uses client_, so it ends before

@@ -19,6 +19,7 @@
 
 #include "train_brake_rviz/board/board.h"
 #include "train_brake_rviz/markers.h"
+#include "train_node/node_parameters.h"
 
 namespace train_brake_rviz {
 
@@ -27,7 +28,8 @@ namespace train_brake_rviz {
 ///   subscribes  scenario, [live/]state, in_train_forces, brake_pressures, wagon_NNN/state
 ///   publishes   ~markers (visualization_msgs/MarkerArray), at most 20 per second of wall time
 ///               ~selection (ViewSelection, latched)
-///               tf: track -> wagon_NNN of locomotives and the followed wagon, in metres; track -> board
+///               tf: track -> wagon_NNN of locomotives and the followed wagon, in metres; board -> track
+///               (of a train that is not in the namespace /train these frames carry it: north/train/track)
 ///   services    ~select (SelectView)
 ///   parameters  ~live                   default true: listen under live/; false: to every record, as in a bag
 ///               ~scenario               file, for bags in which the topic is missing
@@ -37,7 +39,7 @@ namespace train_brake_rviz {
 class ViewNode {
  public:
   /// @throws std::exception if a parameter is wrong
-  ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own);
+  ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own, train_node::NodeParameters& parameters);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -55,7 +57,8 @@ class ViewNode {
   void PublishTransforms(const Snapshot& snapshot);
 
   ros::NodeHandle train_, own_;
-  std::string source_;  ///< prefix of the topics: "live/" or ""
+  std::string frame_prefix_;  ///< of the train's tf frames
+  std::string source_;        ///< prefix of the topics: "live/" or ""
   BoardOptions options_;
   MarkerWriter writer_{"board"};
   Selection selection_;

@@ -35,6 +35,9 @@ class StepService {
   StepService(const StepService&) = delete;
   StepService& operator=(const StepService&) = delete;
 
+  /// Where it listens, as a ROS master has it.
+  std::string uri() const;
+
  private:
   struct Client;
   using ClientPtr = std::shared_ptr<Client>;

@@ -13,6 +13,8 @@
 #include <memory>
 #include <mutex>
 
+#include "train_node/node_parameters.h"
+#include "train_node/registration.h"
 #include "wagon_node/inline_callback_queue.h"
 #include "wagon_node/shared_slot.h"
 #include "wagon_node/step_service.h"
@@ -20,13 +22,21 @@
 
 namespace wagon_node {
 
+/// The private parameters of the node.
+struct WagonOptions {
+  int threads = 1;
+  double master_timeout_s = 8.0;  ///< leave after so long without a master; 0: never
+  bool shared_memory = true;      ///< share memory with a master on the same machine
+
+  /// @throws std::invalid_argument naming all parameters that are wrong or not known
+  static WagonOptions FromParameters(train_node::NodeParameters& parameters);
+};
+
 /// A process of the distributed train. Which vehicles it hosts, it learns from the train's master.
 ///
 ///   services    ~configure, ~step   see Configure.srv, Step.srv
 ///   publishes   wagon_NNN/state     its vehicles in full detail, at every record; in the node's namespace
-///   parameters  ~threads            default 1
-///               ~master_timeout_s   default 8: leave after so long without a master; 0: never
-///               ~shared_memory      default true: share memory with a master on the same machine
+///   parameters  see WagonOptions
 ///
 /// Calls of ~step come by TCP or, if the master is on the same machine, through memory that it shares: those are
 /// served by the thread that called Run().
@@ -37,7 +47,7 @@ namespace wagon_node {
 /// life, too.
 class WagonNode {
  public:
-  WagonNode();
+  explicit WagonNode(const WagonOptions& options);
   /// Serves until the node is shut down or has been left alone.
   void Run();
 
@@ -79,6 +89,7 @@ class WagonNode {
   std::map<std::uint32_t, ros::Publisher> publishers_;  ///< by vehicle
   ros::ServiceServer configure_;
   std::unique_ptr<StepService> step_;
+  std::unique_ptr<train_node::RegistrationWatch> registration_;
 };
 
 }  // namespace wagon_node

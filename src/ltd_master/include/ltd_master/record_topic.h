@@ -1,0 +1,49 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/single_subscriber_publisher.h>
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace ltd_master {
+
+/// A topic of every record that also serves those who come while the train stands: they get the record at which it
+/// stands, so that a recorder that is started in a pause has all that follows from there. (A latched topic would do the
+/// same, but convert and serialise every record even where nobody listens.)
+template <class Message>
+class RecordTopic {
+ public:
+  RecordTopic(ros::NodeHandle& node, const std::string& name, std::uint32_t queue) {
+    publisher_ = node.advertise<Message>(name, queue, [this](const ros::SingleSubscriberPublisher& newcomer) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (held_) newcomer.publish(*held_);
+    });
+  }
+
+  /// A new record. @param make  makes the message; not called where nobody listens
+  template <class Make>
+  void Publish(const Make& make) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      held_.reset();
+    }
+    if (publisher_.getNumSubscribers() > 0) publisher_.publish(make());
+  }
+
+  /// The train stands: who comes before the next record gets this last one.
+  template <class Make>
+  void Hold(const Make& make) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!held_) held_ = make();
+  }
+
+ private:
+  std::mutex mutex_;  ///< of the thread of the run and of those that hear of subscribers
+  std::optional<Message> held_;
+  ros::Publisher publisher_;
+};
+
+}  // namespace ltd_master

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace train_node {
+
+/// The process that has a node's name already, as the ROS master and the process itself tell it. A ROS master gives
+/// a name to whoever asks last and ends the one that had it, which would end a run; so a node looks first.
+struct Occupant {
+  enum class State {
+    kNone,  ///< nobody is registered, or who is registered does not exist any more (killed, its machine gone)
+    kSilent,  ///< a process accepts connections and does not answer: stopped, or in a debugger
+    kAlive,
+  };
+  State state = State::kNone;
+  std::string host;   ///< where it runs, as it calls itself
+  std::string about;  ///< what it says of itself (service ~identify); empty: it has not said anything
+};
+
+/// Name of the service std_srvs/Trigger that tells in its message what a node is doing and since when.
+constexpr const char* kIdentifyService = "identify";
+
+/// Looks for the occupant of a node's name. Needs ros::init, but no registration of this process, and asks nothing
+/// but the ROS master and the occupant. A ROS master that is not there knows of none.
+///
+/// @param node      full name of the node
+/// @param patience  for each answer of the occupant
+Occupant FindOccupant(const std::string& node, std::chrono::milliseconds patience);
+
+/// Looks for the occupant of this node's own name, with the patience that a busy machine needs.
+Occupant FindOccupantOfOwnName();
+
+}  // namespace train_node
