@@ -4,8 +4,9 @@
 #
 # usage: tools/run_train.sh SCENARIO_FILE OUT_FOLDER [arg:=value of launch/train.launch ...]
 # Exit codes are those of ltd_master (train_sim --help lists them; 4: a wagon node is missing, dead or late).
-cd "$(dirname "$0")/.." || exit 1
-. devel/setup.bash || exit 1
+# Relative paths are those of the caller's folder, in arguments of the launch file, too.
+top=$(realpath "$(dirname "$0")/..")
+. "$top/devel/setup.bash" || exit 1
 
 scenario=$(realpath -m "$1")
 out=$(realpath -m "$2")
@@ -19,7 +20,7 @@ trap : INT TERM  # Ctrl-C reaches roslaunch, too: wait for it, then report
 roslaunch train_brake train.launch scenario:="$scenario" vehicles:="$vehicles" out:="$out" \
   exit_status_file:="$status" "$@" &
 launch=$!
-while kill -0 $launch 2>/dev/null; do wait $launch; done
+while kill -0 "$launch" 2>/dev/null; do wait "$launch"; done
 code=$(cat "$status")
 
 # Code 2: nothing was written. What is in the folder is of an earlier run, if there is anything.

@@ -41,7 +41,7 @@ Overrides::Overrides(const std::vector<std::string>& arguments, const std::files
     const std::string label = "--set " + Printable(argument);
     const std::size_t equals = argument.find('=');
     if (equals == std::string::npos || !IsPath(argument.substr(0, equals))) {
-      errors.Add(label, 0, "", "must be a path, '=' and a value, as in train.coupler.slack_m=0.01");
+      errors.Add(label, 0, "", "must be a path, '=' and a value, as in name=mine");
       continue;
     }
     const std::string path = (root_name.empty() ? "" : root_name + ".") + argument.substr(0, equals);

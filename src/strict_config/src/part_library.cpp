@@ -184,16 +184,26 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
   }
   roots.insert(roots.end(), search_roots_.begin(), search_roots_.end());
 
+  fs::path found;
   std::vector<std::string> searched;
   std::vector<std::string> names;
   for (const fs::path& root : roots) {
     const fs::path folder = root / kind;
     if (!IsFolder(folder)) continue;
-    fs::path file = folder / (reference.text + kExtension);
-    if (Exists(file)) return Normal(file);
+    const fs::path file = folder / (reference.text + kExtension);
+    if (!found.empty()) {
+      NoteAmbiguity(found, file);
+      continue;
+    }
+    if (Exists(file)) {
+      found = Normal(file);
+      continue;
+    }
     searched.push_back(DisplayPath(folder));
     for (const std::string& name : NamesIn(folder)) names.push_back(name);
   }
+
+  if (!found.empty()) return found;
 
   std::string text = "names " + Describe(reference);
   if (searched.empty()) {
@@ -209,6 +219,17 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
   }
   reference.source.Report(errors_, key, text);
   return {};
+}
+
+void PartLibrary::NoteAmbiguity(const fs::path& used, const fs::path& other) {
+  std::error_code error;
+  if (!Exists(other) || fs::equivalent(used, other, error)) return;
+  ErrorList unread;
+  const std::optional<std::string> ours = ReadTextFile(used, YamlLimits::kBytes, unread);
+  const std::optional<std::string> theirs = ReadTextFile(other, YamlLimits::kBytes, unread);
+  if (ours && theirs && *ours == *theirs) return;
+  ambiguities_.insert(DisplayPath(used) + " is used; " + DisplayPath(Normal(other)) +
+                      " has the same name, another content, and is not");
 }
 
 std::vector<fs::path> SearchRootsFromEnvironment() {

@@ -871,7 +871,7 @@ TEST_F(PartsTest, WrongOverridesNameThemselves) {
   EXPECT_EQ(ErrorsOf(text, {"record.x=1"}), "--set record.x=1: record.x names no value of the configuration");
   EXPECT_EQ(ErrorsOf(text, {"record="}), "--set record=: record must be true or false, got nothing");
   EXPECT_EQ(ErrorsOf(text, {"record"}),
-            "--set record: must be a path, '=' and a value, as in train.coupler.slack_m=0.01");
+            "--set record: must be a path, '=' and a value, as in name=mine");
   for (const char* path :
        {"=1", ".a=1", "a.=1", "a..b=1", "a[=1", "a[x]=1", "a[]=1", "a]=1", "a b=1", "[0]=1"}) {
     EXPECT_NE(ErrorsOf(text, {path}).find("must be a path, '=' and a value"), std::string::npos) << path;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ class PartLibrary {
   /// The files that were opened so far.
   std::vector<std::filesystem::path> Files() const;
 
+  /// One sentence for each name that stands for different files in the folders that are searched: which is used, and
+  /// which is not. Copies with the same content are no news.
+  const std::set<std::string>& Ambiguities() const { return ambiguities_; }
+
  private:
   NodePtr Parse(const std::string& text, Document document, const KeyPath& path);
   /// @param key  the path of the reference itself: that of the part, or of its base
@@ -46,11 +51,13 @@ class PartLibrary {
   /// The file that a reference stands for, or an empty path after reporting an error.
   std::filesystem::path Locate(const Node& reference, const KeyPath& key, const std::string& kind);
   std::filesystem::path LocateName(const Node& reference, const KeyPath& key, const std::string& kind);
+  void NoteAmbiguity(const std::filesystem::path& used, const std::filesystem::path& other);
 
   std::vector<std::filesystem::path> search_roots_;
   ErrorList& errors_;
   std::map<std::filesystem::path, NodePtr> files_;
   std::map<NodePtr, std::filesystem::path> located_;  ///< the file of each reference
+  std::set<std::string> ambiguities_;
 };
 
 /// The folders listed in the environment variable TRAIN_BRAKE_CONFIG, separated by ':'.

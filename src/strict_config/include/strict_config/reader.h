@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,8 @@ class Reader {
 
   /// All files of the configuration that were read so far.
   std::vector<std::filesystem::path> Files() const { return session_.library.Files(); }
+  /// Names that stand for different files; see PartLibrary.
+  const std::set<std::string>& Ambiguities() const { return session_.library.Ambiguities(); }
 
   template <class Enum>
   void Choice(const char* key, Enum& value, Choices<Enum> choices) {

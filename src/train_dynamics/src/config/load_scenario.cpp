@@ -142,6 +142,7 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
   const auto judge = [&](ScenarioParams& params, Reader& rules) {
     files = rules.Files();
     stable_steps = JudgeWagons(params, rules);
+    warnings.assign(rules.Ambiguities().begin(), rules.Ambiguities().end());
     for (const Warning& warning : Warnings(params)) {
       warnings.push_back(rules.PlaceOf(warning.key) + ": " + warning.text);
     }
