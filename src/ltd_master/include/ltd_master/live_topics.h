@@ -49,7 +49,6 @@ class LiveTopics {
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
   std::map<int, train_brake_msgs::WagonState> wagons_;
-  double start_position_m_ = 0.0;  ///< of the train's centre of mass
   bool held_back_ = false;
   Clock::time_point next_;
 };
