@@ -23,7 +23,6 @@ LiveTopics::LiveTopics(const ros::NodeHandle& node)
       pressures_publisher_(Latched<train_brake_msgs::BrakePressures>(node_, "brake_pressures")) {}
 
 void LiveTopics::Show(const train_dynamics::TrainRecord& record, const Pace& pace) {
-  if (record.exchange == 0) start_position_m_ = record.mean_position_m;
   // Always kept: the run may be paused before the next one, and somebody may come then.
   last_ = record;
   has_record_ = held_back_ = true;
@@ -57,7 +56,7 @@ void LiveTopics::PublishRecord(const train_dynamics::TrainRecord& record) {
   status_.header.stamp = state_.header.stamp;
   status_.exchange = record.exchange;
   status_.mean_speed_mps = record.mean_speed_mps;
-  status_.travelled_m = record.mean_position_m - start_position_m_;
+  status_.travelled_m = record.mean_position_m - record.at_time_zero.mean_position_m;
   // The two ends of the train, which have no coupler and no force, are in the list: hence >= 0 and <= 0.
   const auto [smallest, largest] =
       std::minmax_element(record.held.coupler_force_n.begin(), record.held.coupler_force_n.end());
@@ -73,8 +72,8 @@ void LiveTopics::PublishRecord(const train_dynamics::TrainRecord& record) {
   for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
     ros::Publisher& publisher = wagon_publishers_[detail.vehicle];
     if (!publisher)
-      publisher =
-          Latched<train_brake_msgs::WagonState>(node_, train_dynamics::VehicleName(detail.vehicle, vehicles) + "/state");
+      publisher = Latched<train_brake_msgs::WagonState>(
+          node_, train_dynamics::VehicleName(detail.vehicle, vehicles) + "/state");
     train_results::Convert(record, detail, wagon_);
     publisher.publish(wagon_);
   }

@@ -87,8 +87,9 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.output.folder = ExpandHome(parameters.Text("out", ""));
   options.output.record_bag = parameters.Flag("record", true);
   options.output.checkpoint_interval_s = parameters.NonNegative("checkpoint_interval_s", 10.0);
-  options.output.on_write_error =
-      parameters.IsFirstOf("on_write_error", "stop", "go_on") ? train_results::OnWriteError::kStop : train_results::OnWriteError::kGoOn;
+  options.output.on_write_error = parameters.IsFirstOf("on_write_error", "stop", "go_on")
+                                      ? train_results::OnWriteError::kStop
+                                      : train_results::OnWriteError::kGoOn;
   options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
   options.real_time_factor = parameters.NonNegative("real_time_factor", 0.0);
   options.start_paused = parameters.Flag("start_paused", false);
@@ -204,37 +205,26 @@ int MasterNode::Run() {
       resumed_ ? std::make_unique<train_results::RunOutput>(options_.output, *resumed_)
                : std::make_unique<train_results::RunOutput>(options_.output, scenario_.files, scenario);
   const std::unique_ptr<train_dynamics::Transport> transport = MakeTransport();
-  TrainMaster master(scenario, scenario_.consist, *transport, scenario_.pressures);
-  train_dynamics::RunSummary summary(scenario);
+  train_run::TrainRun run(scenario, scenario_.consist, *transport, scenario_.pressures,
+                          resumed_ ? &resumed_->checkpoint : nullptr, output.get());
+  const TrainMaster& master = run.master();
   std::unique_ptr<train_run::Progress> progress;
-  master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
-  master.AddObserver([&](const TrainRecord& record) { output->Record(record); });
-  master.AddObserver([&](const TrainRecord& record) { Publish(record); });
-  master.AddObserver([&](const TrainRecord& record) {
+  run.AddObserver([&](const TrainRecord& record) { Publish(record); });
+  run.AddObserver([&](const TrainRecord& record) {
     if (progress == nullptr)
       progress = std::make_unique<train_run::Progress>(scenario.duration_s,
-                                                       master.start_s());  // the start-up is over
+                                                       run.start_s());  // the start-up is over
     progress->Show(record.time_s, record.mean_speed_mps);
   });
 
   ros::AsyncSpinner spinner(4);  // steps and a pause may wait while another service is called
   spinner.start();
-  std::string fault;
-  int exit_code = train_run::kSuccess;
+  std::string rank_fault;
   try {
-    Loop(master, *output, summary);
-    if (!master.Done()) exit_code = train_run::kInterrupted;
-  } catch (const train_dynamics::SimulationFault& e) {
-    fault = e.what();
-    exit_code = train_run::kSimulationFault;
-  } catch (const WaitInterrupted&) {
-    exit_code = train_run::kInterrupted;
+    Go(run);
+  } catch (const WaitInterrupted&) {  // by what Ending tells
   } catch (const RankFailure& e) {
-    exit_code = Ending() ? train_run::kInterrupted : train_run::kRankFailure;
-    fault = e.what();
-  } catch (const std::exception& e) {  // of the recorder
-    exit_code = train_run::kFailure;
-    fault = std::string("the results could not be written: ") + e.what();
+    if (!Ending()) rank_fault = e.what();
   }
   control_.End();
   spinner.stop();
@@ -244,13 +234,11 @@ int MasterNode::Run() {
 
   if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
-  const std::string json = summary.Json(master, wall_s, exit_code == train_run::kInterrupted ? "" : fault);
-  try {
-    output->Finish(master, json);
-  } catch (const std::exception& e) {
-    exit_code = train_run::kFailure;
-    fault = std::string("the results could not be written: ") + e.what();
-  }
+  const std::string json = run.Finish(wall_s, rank_fault);
+  int exit_code = run.exit_code();
+  if (exit_code != train_run::kFailure && !rank_fault.empty()) exit_code = train_run::kRankFailure;
+  std::string fault = rank_fault.empty() ? run.fault() : rank_fault;
+  if (exit_code == train_run::kFailure) fault = "the results could not be written: " + run.write_error();
   PublishDiagnostics(master, exit_code == train_run::kSuccess ? "complete" : "ended early");
   ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
   fmt::print("{}", json);
@@ -263,76 +251,50 @@ int MasterNode::Run() {
   return exit_code;
 }
 
-void MasterNode::Loop(TrainMaster& master, train_results::RunOutput& output,
-                      train_dynamics::RunSummary& summary) {
-  if (resumed_) {
-    summary.SetMemory(resumed_->checkpoint.summary);
-    initial_energy_j_ = summary.initial_energy_j();
-    master.Resume(resumed_->checkpoint);
-    simulated_s_ = master.time_s();
-  } else {
-    master.Start();
-  }
-  if (control_.paused()) Settle(master.time_s());
-  Clock::time_point last_diagnostics = Clock::now();
-  double simulated_then_s = master.time_s();
-  while (!master.Done() && !Ending()) {
-    if (control_.Admit(master.time_s())) {
-      const Clock::time_point begin = Clock::now();
-      const bool leaves_checkpoint = output.AskForCheckpoint(master);
-      master.Exchange();
-      if (leaves_checkpoint) output.KeepCheckpoint(master, summary);
-      statistics_.Add(std::chrono::duration<double>(Clock::now() - begin).count());
-      if (ranks_ != nullptr) {
-        ++last_count_[ranks_->timing().last_rank];
-        if (ranks_->timing().was_late) ++late_exchanges_;
-      }
-      simulated_s_ = master.time_s();
-      control_.Completed(master.time_s());
-    } else {
-      Settle(master.time_s());
-    }
-    const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
-    if (elapsed_s >= 1.0) {
-      real_time_factor_ = (master.time_s() - simulated_then_s) / elapsed_s;
-      PublishDiagnostics(master, control_.paused() ? "paused" : "running");
-      simulated_then_s = master.time_s();
-      last_diagnostics = Clock::now();
-    }
-  }
-  if (!master.Done()) EndWithCheckpoint(master, output, summary);
-}
-
-void MasterNode::EndWithCheckpoint(TrainMaster& master, train_results::RunOutput& output,
-                                   const train_dynamics::RunSummary& summary) {
+void MasterNode::Go(train_run::TrainRun& run) {
   constexpr std::chrono::seconds kPatience(2);
-  finishing_until_ = Clock::now() + kPatience;
-  for (bool is_kept = false; !is_kept && !master.Done();) {
-    constexpr bool kWanted = true;
-    is_kept = output.AskForCheckpoint(master, kWanted);
-    if (!is_kept && master.RecordIsNext()) return;  // none are kept
-    master.Exchange();
-    if (is_kept) output.KeepCheckpoint(master, summary);
-  }
+  const TrainMaster& master = run.master();
+  simulated_s_ = run.start_s();
+  Clock::time_point last_diagnostics = Clock::now();
+  double simulated_then_s = run.start_s();
+  train_run::RunHooks hooks;
+  hooks.ends = [this, kPatience] {
+    if (!Ending()) return false;
+    finishing_until_ = Clock::now() + kPatience;
+    return true;
+  };
+  hooks.admits = [&] {
+    if (control_.Admit(master.time_s())) return true;
+    Settle(master.time_s());
+    return false;
+  };
+  hooks.exchanged = [&](double wall_s) {
+    statistics_.Add(wall_s);
+    if (ranks_ != nullptr) {
+      ++last_count_[ranks_->timing().last_rank];
+      if (ranks_->timing().was_late) ++late_exchanges_;
+    }
+    simulated_s_ = master.time_s();
+    control_.Completed(master.time_s());
+  };
+  hooks.turned = [&] {
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
+    if (elapsed_s < 1.0) return;
+    real_time_factor_ = (master.time_s() - simulated_then_s) / elapsed_s;
+    PublishDiagnostics(master, control_.paused() ? "paused" : "running");
+    simulated_then_s = master.time_s();
+    last_diagnostics = Clock::now();
+  };
+  run.Go(hooks, kPatience);
 }
 
 void MasterNode::Publish(const TrainRecord& record) {
-  PublishClock(record.time_s);
-  if (state_publisher_.getNumSubscribers() > 0) {
-    train_results::Convert(record, state_);
-    state_publisher_.publish(state_);
-  }
-  if (forces_publisher_.getNumSubscribers() > 0) {
-    train_results::Convert(record, forces_);
-    forces_publisher_.publish(forces_);
-  }
-  if (pressures_publisher_.getNumSubscribers() > 0) {
-    train_results::Convert(record, pressures_);
-    pressures_publisher_.publish(pressures_);
-  }
+  clock_.Show(record.time_s);
+  state_topic_.Publish(As(record, state_));
+  forces_topic_.Publish(As(record, forces_));
+  pressures_topic_.Publish(As(record, pressures_));
   if (record.ledger) {
-    if (record.exchange == 0) initial_energy_j_ = record.ledger->Stored();
-    train_results::Convert(record, *record.ledger, initial_energy_j_, ledger_);
+    train_results::Convert(record, ledger_);
     ledger_publisher_.publish(ledger_);
   }
   live_.Show(record, PaceNow());

@@ -2,6 +2,8 @@
 // the same summary. Whatever the model, the number of threads, and what the parts of the train remember.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "simulate.h"
@@ -31,6 +33,8 @@ struct TestRun {
         summary(loaded.params) {
     master.AddObserver([this](const TrainRecord& record) {
       summary.Observe(record);
+      if (record.exchange == 0) first_position_m = record.mean_position_m;
+      zero = record.at_time_zero;
       seen.push_back({record.exchange, record.state_digest, record.held.coupler_force_n,
                       record.acceleration_mps2, record.vehicles.speed_mps, record.vehicles.shoe_force_n});
     });
@@ -52,6 +56,8 @@ struct TestRun {
   TrainMaster master;
   RunSummary summary;
   std::vector<Seen> seen;
+  TimeZero zero;  // as the last record has it
+  double first_position_m = 0.0;
   TrainCheckpoint checkpoint;
 };
 
@@ -84,6 +90,10 @@ TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
   const std::vector<Seen> tail(whole.seen.end() - static_cast<long>(resumed.seen.size()), whole.seen.end());
   EXPECT_EQ(tail.front().exchange, middle + whole.loaded.params.ExchangesPerRecord());
   EXPECT_TRUE(tail == resumed.seen);
+  EXPECT_EQ(whole.zero.mean_position_m, resumed.zero.mean_position_m);
+  EXPECT_EQ(whole.zero.stored_energy_j, resumed.zero.stored_energy_j);
+  EXPECT_EQ(whole.zero.mean_position_m, whole.first_position_m);  // what observers were shown at time 0
+  EXPECT_GT(whole.zero.stored_energy_j, 0.0);
   const auto after_times = [](const std::string& json) { return json.substr(json.find("\"complete\"")); };
   EXPECT_EQ(after_times(whole.Summary()), after_times(resumed.Summary()));
 }
@@ -165,6 +175,32 @@ TEST(Checkpoint, FollowsARecord) {
   run.master.Start();
   EXPECT_FALSE(run.master.RecordIsNext());
   EXPECT_THROW(run.master.AskForCheckpoint(), std::logic_error);
+}
+
+TEST(Checkpoint, OfAnotherFormatIsRefusedNamingItsWriter) {
+  // As a checkpoint of format 1 begins and ends: mark, format, scenario, ..., checksum.
+  ByteWriter writer;
+  writer.AddRaw("TBTRAIN\n", 8);
+  writer.Add(std::uint64_t{1});
+  writer.Add(std::string("# train_brake 0.0.7\nname: old\n"));
+  writer.Add(std::uint64_t{500});
+  Digest digest;
+  const std::vector<std::uint8_t> content = writer.bytes();
+  for (std::size_t at = 0; at < content.size(); at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, content.data() + at, std::min<std::size_t>(8, content.size() - at));
+    digest.Add(word);
+  }
+  digest.Add(std::uint64_t{content.size()});
+  writer.Add(digest.value());
+  try {
+    DecodeTrainCheckpoint(writer.bytes());
+    FAIL();
+  } catch (const SnapshotError& e) {
+    const std::string why = e.what();
+    EXPECT_NE(why.find("format version 1, written by train_brake 0.0.7"), std::string::npos) << why;
+    EXPECT_NE(why.find("run its config.yaml again"), std::string::npos) << why;
+  }
 }
 
 TEST(Snapshot, EveryDamagedByteIsNoticed) {

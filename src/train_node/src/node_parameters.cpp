@@ -138,8 +138,8 @@ void NodeParameters::ThrowIfWrong() const {
   const std::vector<std::string> known(known_.begin(), known_.end());
   for (const std::string& name : Names()) {
     if (known_.count(name) > 0) continue;
-    errors.push_back(fmt::format("parameter {} is not known{}", name,
-                                 strict_config::KeyHint(name, known, "parameter")));
+    errors.push_back(
+        fmt::format("parameter {} is not known{}", name, strict_config::KeyHint(name, known, "parameter")));
   }
   if (!errors.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(errors, "\n")));
 }

@@ -34,7 +34,6 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
   for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
     *topic = below(bag_.topics(), "topic");
   }
-  initial_j_ = reader.Number();
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
     const int vehicle = below(vehicles, "vehicle");
     wagon_topic_[vehicle] = below(bag_.topics(), "topic");
@@ -48,7 +47,6 @@ Bytes BagRecorder::Checkpoint() {
   for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
     writer.Add(static_cast<std::uint64_t>(topic));
   }
-  writer.Add(initial_j_);
   writer.Add(std::uint64_t{wagon_topic_.size()});
   for (const auto& [vehicle, topic] : wagon_topic_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
@@ -67,8 +65,7 @@ void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
   Convert(record, pressures_);
   bag_.Write(pressures_topic_, time, pressures_);
   if (record.ledger) {
-    if (record.exchange == 0) initial_j_ = record.ledger->Stored();
-    Convert(record, *record.ledger, initial_j_, ledger_);
+    Convert(record, ledger_);
     bag_.Write(ledger_topic_, time, ledger_);
   }
   const int vehicles = static_cast<int>(record.vehicles.position_m.size());

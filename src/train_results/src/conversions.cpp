@@ -51,8 +51,9 @@ void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& messag
   Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
 }
 
-void Convert(const TrainRecord& record, const train_dynamics::EnergyLedger& ledger, double initial_j,
-             train_brake_msgs::EnergyLedger& message) {
+void Convert(const TrainRecord& record, train_brake_msgs::EnergyLedger& message) {
+  const train_dynamics::EnergyLedger& ledger = *record.ledger;
+  const double initial_j = record.at_time_zero.stored_energy_j;
   Stamp(record, message);
   message.element.clear();
   message.dissipated_j.clear();

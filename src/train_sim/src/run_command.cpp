@@ -8,12 +8,12 @@
 
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
-#include "train_dynamics/train/run_summary.h"
 #include "train_dynamics/train/thread_team.h"
 #include "train_results/resume.h"
 #include "train_results/run_output.h"
 #include "train_run/interrupt.h"
 #include "train_run/progress.h"
+#include "train_run/train_run.h"
 
 namespace train_sim {
 namespace {
@@ -51,61 +51,32 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
         const train_dynamics::TrainCheckpoint* checkpoint, train_results::RunOutput& output) {
   train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
                                               Threads(options.threads, scenario));
-  train_dynamics::TrainMaster master(scenario.params, scenario.consist, vehicles, scenario.pressures);
-  train_dynamics::RunSummary summary(scenario.params);
-  const double start_s =
-      checkpoint == nullptr ? 0.0
-                            : scenario.params.exchange_interval_s * static_cast<double>(checkpoint->exchange);
-  train_run::Progress progress(scenario.params.duration_s, start_s);
-  master.AddObserver([&](const TrainRecord& record) { summary.Observe(record); });
-  master.AddObserver([&](const TrainRecord& record) { output.Record(record); });
-  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
-
-  std::string fault, write_error;
-  try {
-    if (checkpoint == nullptr) {
-      master.Start();
-    } else {
-      summary.SetMemory(checkpoint->summary);
-      master.Resume(*checkpoint);
-    }
-    // Interrupted, it goes on to the next record, of which there can be a checkpoint.
-    for (bool ending = false; !master.Done() && !ending;) {
-      const bool interrupted = train_run::Interrupt() != 0;
-      ending = interrupted && master.RecordIsNext();
-      const bool leaves_checkpoint = output.AskForCheckpoint(master, interrupted);
-      master.Exchange();
-      if (leaves_checkpoint) output.KeepCheckpoint(master, summary);
-    }
-  } catch (const train_dynamics::SimulationFault& e) {
-    fault = e.what();
-  } catch (const std::exception& e) {  // of a recorder
-    write_error = e.what();
-  }
+  train_run::TrainRun run(scenario.params, scenario.consist, vehicles, scenario.pressures, checkpoint,
+                          &output);
+  train_run::Progress progress(scenario.params.duration_s, run.start_s());
+  run.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
+  train_run::RunHooks hooks;
+  hooks.ends = [] { return train_run::Interrupt() != 0; };
+  run.Go(hooks);
   progress.Finish();
-
-  const std::string json = summary.Json(master, progress.WallSeconds(), fault);
-  try {
-    output.Finish(master, json);
-  } catch (const std::exception& e) {
-    write_error = e.what();
-  }
+  const std::string json = run.Finish(progress.WallSeconds());
   fmt::print("{}", json);
-  if (!write_error.empty()) {
-    fmt::print(stderr, "train_sim: the results could not be written at {:.3f} s: {} (is the disk full?)\n",
-               master.time_s(), write_error);
-    return train_run::kFailure;
+  const double end_s = run.master().time_s();
+  switch (run.exit_code()) {
+    case train_run::kFailure:
+      fmt::print(stderr, "train_sim: the results could not be written at {:.3f} s: {} (is the disk full?)\n",
+                 end_s, run.write_error());
+      break;
+    case train_run::kSimulationFault:
+      fmt::print(stderr, "train_sim: the simulation broke down: {}\n", run.fault());
+      break;
+    case train_run::kInterrupted:
+      fmt::print(stderr, "train_sim: interrupted at {:.3f} s of {:g} s\n", end_s, scenario.params.duration_s);
+      break;
+    default:
+      break;
   }
-  if (!fault.empty()) {
-    fmt::print(stderr, "train_sim: the simulation broke down: {}\n", fault);
-    return train_run::kSimulationFault;
-  }
-  if (!master.Done()) {
-    fmt::print(stderr, "train_sim: interrupted at {:.3f} s of {:g} s\n", master.time_s(),
-               scenario.params.duration_s);
-    return train_run::kInterrupted;
-  }
-  return train_run::kSuccess;
+  return run.exit_code();
 }
 
 }  // namespace

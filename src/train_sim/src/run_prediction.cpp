@@ -6,25 +6,21 @@
 #include <train_brake_msgs/Step.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
-#include "train_dynamics/train/train_master.h"
 #include "train_results/conversions.h"
+#include "train_run/train_run.h"
 
 namespace train_sim {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using train_dynamics::ScenarioParams;
 using train_dynamics::TrainRecord;
 using train_dynamics::config::LoadedScenario;
-
-double Seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Number of records and of energy ledgers in a run, the start's and the end's included.
 struct Counts {
@@ -49,7 +45,7 @@ class BagEstimate {
     train_results::Convert(first, pressures);
     Add(pressures, count_.records);
     train_brake_msgs::EnergyLedger ledger;
-    train_results::Convert(first, *first.ledger, 0.0, ledger);
+    train_results::Convert(first, ledger);
     Add(ledger, count_.ledgers);
     Add(train_results::ScenarioMessage(scenario), 1.0);
     for (const train_dynamics::WagonDetail& detail : first.vehicles.details) {
@@ -95,9 +91,9 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, threads);
   train_dynamics::BrakeSystem brake = scenario.pressures;
   brake.MoveAhead(0.5 * params.duration_s);
-  train_dynamics::TrainMaster master(params, scenario.consist, vehicles, std::move(brake));
+  train_run::TrainRun run(params, scenario.consist, vehicles, std::move(brake));
   double queue_bytes = 0.0;
-  master.AddObserver([&](const TrainRecord& record) {
+  run.AddObserver([&](const TrainRecord& record) {
     if (record.exchange > 0) return;
     const BagEstimate bag(record, params);
     prediction.bag_bytes = bag.bytes();
@@ -106,19 +102,20 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
   // By batches, of which the median is taken: other work on the machine spoils single ones.
   const int batch = std::min(params.ExchangesPerRecord(), 50);
   std::vector<double> batch_s;
-  try {
-    master.Start();
-    const Clock::time_point start = Clock::now();
-    for (Clock::time_point last = start; !master.Done();) {
-      for (int i = 0; i < batch && !master.Done(); ++i) master.Exchange();
-      const Clock::time_point now = Clock::now();
-      batch_s.push_back(Seconds(now - last));
-      last = now;
-      if (master.exchange() >= kExchanges || Seconds(now - start) > kLongest) break;
-    }
-  } catch (const train_dynamics::SimulationFault& e) {
-    prediction.fault = e.what();
-  }
+  double this_batch_s = 0.0, all_s = 0.0;
+  const train_dynamics::TrainMaster& master = run.master();
+  train_run::RunHooks hooks;
+  hooks.exchanged = [&](double wall_s) {
+    this_batch_s += wall_s;
+    all_s += wall_s;
+    if (master.exchange() % batch != 0 && !master.Done()) return;
+    batch_s.push_back(this_batch_s);
+    this_batch_s = 0.0;
+  };
+  // Ends with a batch, but for the run's last.
+  hooks.ends = [&] { return this_batch_s == 0.0 && (master.exchange() >= kExchanges || all_s > kLongest); };
+  run.Go(hooks);
+  prediction.fault = run.fault();
   if (!batch_s.empty()) {
     const auto median = batch_s.begin() + static_cast<long>(batch_s.size() / 2);
     std::nth_element(batch_s.begin(), median, batch_s.end());

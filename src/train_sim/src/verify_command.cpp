@@ -22,6 +22,7 @@
 #include "train_results/resume.h"
 #include "train_run/interrupt.h"
 #include "train_run/progress.h"
+#include "train_run/train_run.h"
 #include "train_sim/run_command.h"
 
 namespace train_sim {
@@ -112,8 +113,7 @@ class Comparison {
   RecordedRun& recorded_;
   const int vehicles_;
   long records_ = 0;
-  bool is_recorded_ = false;  ///< the state at the last record
-  double initial_j_ = 0.0;
+  bool is_recorded_ = false;    ///< the state at the last record
   double time_s_ = 0.0;         ///< of the last record
   std::uint64_t exchange_ = 0;  ///< of the last record
   std::vector<Difference> differences_;
@@ -155,9 +155,6 @@ void Comparison::CheckWagons(const TrainRecord& record) {
 }
 
 void Comparison::BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params) {
-  train_dynamics::RunSummary summary(params);
-  summary.SetMemory(checkpoint.summary);
-  initial_j_ = summary.initial_energy_j();
   std::vector<RecordedTopic*> topics = {&recorded_.state(), recorded_.forces(), recorded_.pressures(),
                                         recorded_.ledger()};
   for (const int vehicle : params.detail_vehicles) {
@@ -174,7 +171,6 @@ void Comparison::Observe(const TrainRecord& record) {
     train_results::Convert(record, message);
     return true;
   };
-  if (record.exchange == 0) initial_j_ = record.ledger->Stored();
   time_s_ = record.time_s;
   exchange_ = record.exchange;
   is_recorded_ = recorded_.state().exchange() == record.exchange;
@@ -183,7 +179,7 @@ void Comparison::Observe(const TrainRecord& record) {
   Check(recorded_.pressures(), record, pressures_, convert);
   Check(recorded_.forces(), record, forces_, convert);
   Check(recorded_.ledger(), record, ledger_, [&](auto& message) {
-    if (record.ledger) train_results::Convert(record, *record.ledger, initial_j_, message);
+    if (record.ledger) train_results::Convert(record, message);
     return record.ledger.has_value();
   });
   if (is_recorded_ && !Differs()) ++records_;
@@ -240,36 +236,29 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
   const ScenarioParams& params = scenario.params;
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
-  train_dynamics::TrainMaster master(params, scenario.consist, vehicles, scenario.pressures);
   Comparison comparison(recorded, scenario.consist.vehicles());
   const std::optional<train_dynamics::TrainCheckpoint> branch = BranchOf(options.recording);
   const std::uint64_t first = branch ? branch->exchange : 0;
-  const double start_s = static_cast<double>(first) * params.exchange_interval_s;
-  train_run::Progress progress(params.duration_s, start_s);
-  master.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
-  master.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
+  train_run::TrainRun run(params, scenario.consist, vehicles, scenario.pressures,
+                          branch ? &*branch : nullptr);
+  const train_dynamics::TrainMaster& master = run.master();
+  train_run::Progress progress(params.duration_s, run.start_s());
+  run.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
+  run.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
 
   train_run::CatchInterrupts();
-  std::string fault;
-  try {
-    if (branch) {
-      comparison.BeginAt(*branch, params);
-      master.Resume(*branch);
-    } else {
-      master.Start();
-    }
-    while (!master.Done() && !comparison.Finished() && train_run::Interrupt() == 0) master.Exchange();
-  } catch (const train_dynamics::SimulationFault& e) {
-    fault = e.what();
-  }
+  if (branch) comparison.BeginAt(*branch, params);
+  train_run::RunHooks hooks;
+  hooks.ends = [&] { return comparison.Finished() || train_run::Interrupt() != 0; };
+  run.Go(hooks);
   progress.Finish();
 
   if (comparison.Differs()) {
     fmt::print("{}", comparison.Verdict());
     return train_run::kDifferent;
   }
-  if (!fault.empty()) {
-    fmt::print("different: the repetition breaks down, where the bag goes on: {}\n", fault);
+  if (!run.fault().empty()) {
+    fmt::print("different: the repetition breaks down, where the bag goes on: {}\n", run.fault());
     return train_run::kDifferent;
   }
   if (!comparison.Finished()) {
@@ -296,7 +285,8 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
                Presentable(summarised), digest);
     return train_run::kDifferent;
   }
-  const std::string begin = branch ? fmt::format("from {:g} s, where it left another run, ", start_s) : "";
+  const std::string begin =
+      branch ? fmt::format("from {:g} s, where it left another run, ", run.start_s()) : "";
   fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
              scenario.consist.vehicles(), begin, params.duration_s, digest, covered, comparison.Missing());
   return train_run::kSuccess;

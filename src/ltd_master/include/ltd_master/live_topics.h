@@ -54,7 +54,6 @@ class LiveTopics {
   train_brake_msgs::WagonState wagon_;
   train_dynamics::TrainRecord last_;
   bool has_record_ = false;
-  double start_position_m_ = 0.0;  ///< of the train's centre of mass
   bool held_back_ = false;
   Clock::time_point next_;
 };

@@ -21,12 +21,12 @@
 #include "ltd_master/run_control.h"
 #include "ltd_master/simulated_clock.h"
 #include "train_dynamics/config/load_scenario.h"
-#include "train_dynamics/train/run_summary.h"
 #include "train_node/node_parameters.h"
 #include "train_node/registration.h"
 #include "train_results/conversions.h"
 #include "train_results/run_output.h"
 #include "train_run/progress.h"
+#include "train_run/train_run.h"
 
 namespace ltd_master {
 
@@ -71,11 +71,8 @@ class MasterNode {
  private:
   void TellWhatIsNotUsed() const;
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
-  void Loop(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
-            train_dynamics::RunSummary& summary);
-  /// Goes on to the next record, and leaves a checkpoint there, if that takes no time.
-  void EndWithCheckpoint(train_dynamics::TrainMaster& master, train_results::RunOutput& output,
-                         const train_dynamics::RunSummary& summary);
+  /// Paced by control_, with diagnostics each second. @throws WaitInterrupted, RankFailure
+  void Go(train_run::TrainRun& run);
   void Publish(const train_dynamics::TrainRecord& record);
   /// While the train stands: what those need who come now.
   void Settle(double simulated_s);
@@ -100,7 +97,6 @@ class MasterNode {
   ExchangeStatistics statistics_;
   std::vector<unsigned> last_count_;  ///< [rank] how often it replied last
   unsigned late_exchanges_ = 0;
-  double initial_energy_j_ = 0.0;
   double real_time_factor_ = 0.0;  ///< over the last second of wall time
   std::atomic<double> simulated_s_{0.0};
 

@@ -65,11 +65,10 @@ std::string Partings(const std::vector<Parting>& partings) {
 void RunSummary::Observe(const TrainRecord& record) {
   const std::vector<double>& speed = record.vehicles.speed_mps;
   vehicles_ = static_cast<int>(speed.size());
-  if (record.exchange == 0) start_position_m_ = record.mean_position_m;
   mean_speed_mps_ = record.mean_speed_mps;
   lead_speed_mps_ = speed.front();
   tail_speed_mps_ = speed.back();
-  mean_distance_m_ = record.mean_position_m - start_position_m_;
+  mean_distance_m_ = record.mean_position_m - record.at_time_zero.mean_position_m;
   const double forward_mps = scenario_.initial_speed_kmh < 0.0 ? -mean_speed_mps_ : mean_speed_mps_;
   if (!HasStopped() && forward_mps <= kStandstill) {
     stop_time_s_ = record.time_s;
@@ -77,17 +76,12 @@ void RunSummary::Observe(const TrainRecord& record) {
   } else if (HasStopped() && std::abs(mean_speed_mps_) > kMoving) {
     stop_time_s_ = stop_distance_m_ = kNone;
   }
-  if (record.ledger) {
-    ledger_ = *record.ledger;
-    if (record.exchange == 0) initial_energy_j_ = ledger_.Stored();
-  }
+  if (record.ledger) ledger_ = *record.ledger;
   state_digest_ = record.state_digest;
 }
 
 template <class Self, class Function>
 void RunSummary::ForEachMemory(Self& self, Function& function) {
-  function(self.start_position_m_);
-  function(self.initial_energy_j_);
   function(self.stop_time_s_);
   function(self.stop_distance_m_);
 }
@@ -106,6 +100,7 @@ void RunSummary::SetMemory(const std::vector<double>& memory) {
 
 std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std::string& fault) const {
   const double simulated_s = master.time_s();
+  const double initial_j = master.at_time_zero().stored_energy_j;
   const double own_s = simulated_s - master.start_s();  // of this process: without what it was resumed from
   const double vehicle_steps = own_s / scenario_.dt_s * vehicles_;
   char digest[20];
@@ -134,8 +129,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
                   &ForceExtremes::compression_time_s)
        << ",\n  \"partings\": [" << Partings(master.in_train_forces().Partings())
        << "],\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
-       << ",\n    \"initial_j\": " << Number(initial_energy_j_)
-       << ",\n    \"final_j\": " << Number(ledger_.Stored())
+       << ",\n    \"initial_j\": " << Number(initial_j) << ",\n    \"final_j\": " << Number(ledger_.Stored())
        << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j)
        << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
   const char* separator = "";
@@ -143,7 +137,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
     json << separator << "\n      " << Quoted(element) << ": " << Number(energy);
     separator = ",";
   }
-  json << "\n    },\n    \"residual_j\": " << Number(ledger_.Residual(initial_energy_j_))
+  json << "\n    },\n    \"residual_j\": " << Number(ledger_.Residual(initial_j))
        << "\n  },\n  \"state_digest\": \"" << digest << "\"\n}\n";
   return json.str();
 }

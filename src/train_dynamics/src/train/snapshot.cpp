@@ -8,7 +8,9 @@
 namespace train_dynamics {
 namespace {
 
-constexpr std::uint64_t kFormatVersion = 2;  // rises when the fields or their meaning change
+// Each rises when the fields or their meaning change; in all versions of a train's checkpoint the scenario comes first.
+constexpr std::uint64_t kBlockFormat = 2;
+constexpr std::uint64_t kTrainFormat = 3;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -22,10 +24,10 @@ std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
   return digest.value();
 }
 
-ByteWriter Begin(const char* mark) {
+ByteWriter Begin(const char* mark, std::uint64_t format) {
   ByteWriter writer;
   writer.AddRaw(mark, kWord);
-  writer.Add(kFormatVersion);
+  writer.Add(format);
   return writer;
 }
 
@@ -34,23 +36,35 @@ Bytes Finish(ByteWriter& writer) {
   return writer.bytes();
 }
 
-/// A reader of what stands between mark and checksum. @param what  "a checkpoint", for messages
-ByteReader ReaderOf(const Bytes& bytes, const char* mark, const std::string& what) {
-  constexpr std::size_t kHead = 2 * kWord;
+constexpr std::size_t kHead = 2 * kWord;
+
+bool IsWhole(const Bytes& bytes) {
+  if (bytes.size() < kHead + kWord) return false;
+  const std::size_t end = bytes.size() - kWord;
+  return ByteReader(bytes.data() + end, kWord).Word() == Checksum(bytes.data(), end);
+}
+
+/// What stands between mark and checksum.
+ByteReader ContentsOf(const Bytes& bytes) { return {bytes.data() + kHead, bytes.size() - kHead - kWord}; }
+
+/// @param what  "a checkpoint", for messages
+std::uint64_t FormatOf(const Bytes& bytes, const char* mark, const std::string& what) {
   if (bytes.size() < kWord || std::memcmp(bytes.data(), mark, kWord) != 0)
     throw SnapshotError("is not " + what);
-  ByteReader head(bytes.data() + kWord, bytes.size() - kWord);
-  const std::uint64_t version = head.Word();
-  if (version != kFormatVersion) {
-    throw SnapshotError("is " + what + " of format version " + std::to_string(version) +
-                        ", this program reads version " + std::to_string(kFormatVersion));
-  }
-  if (bytes.size() < kHead + kWord) throw SnapshotError("is cut short");
-  const std::size_t end = bytes.size() - kWord;
-  if (ByteReader(bytes.data() + end, kWord).Word() != Checksum(bytes.data(), end)) {
-    throw SnapshotError("is damaged or cut short: its checksum is wrong");
-  }
-  return {bytes.data() + kHead, end - kHead};
+  return ByteReader(bytes.data() + kWord, bytes.size() - kWord).Word();
+}
+
+/// Who wrote a checkpoint of a train, of whatever format, from the first line of its scenario.
+std::string WriterOf(const Bytes& bytes) {
+  if (!IsWhole(bytes)) return "an unknown program";
+  const std::string scenario = ContentsOf(bytes).Text();
+  const std::string line = scenario.substr(0, scenario.find('\n'));
+  return line.rfind("# ", 0) == 0 ? line.substr(2) : "an unknown program";
+}
+
+ByteReader ReaderOf(const Bytes& bytes) {
+  if (!IsWhole(bytes)) throw SnapshotError("is damaged or cut short: its checksum is wrong");
+  return ContentsOf(bytes);
 }
 
 void Add(const std::vector<StateRow>& states, ByteWriter& writer) {
@@ -76,7 +90,7 @@ void CheckRows(const std::vector<StateRow>& rows, int vehicles) {
 }
 
 Bytes Encode(const BlockSnapshot& snapshot) {
-  ByteWriter writer = Begin(kBlockMark);
+  ByteWriter writer = Begin(kBlockMark, kBlockFormat);
   writer.Add(snapshot.exchange);
   writer.Add(snapshot.first);
   Add(snapshot.states, writer);
@@ -84,7 +98,13 @@ Bytes Encode(const BlockSnapshot& snapshot) {
 }
 
 BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes) {
-  ByteReader reader = ReaderOf(bytes, kBlockMark, "a snapshot of vehicles");
+  const std::uint64_t format = FormatOf(bytes, kBlockMark, "a snapshot of vehicles");
+  if (format != kBlockFormat) {
+    throw SnapshotError("is a snapshot of vehicles of format version " + std::to_string(format) +
+                        ", this program reads version " + std::to_string(kBlockFormat) +
+                        ": all programs of a run must be of one build");
+  }
+  ByteReader reader = ReaderOf(bytes);
   BlockSnapshot snapshot;
   snapshot.exchange = reader.Word();
   snapshot.first = reader.Word();
@@ -94,10 +114,12 @@ BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes) {
 }
 
 Bytes Encode(const TrainCheckpoint& checkpoint) {
-  ByteWriter writer = Begin(kTrainMark);
+  ByteWriter writer = Begin(kTrainMark, kTrainFormat);
   writer.Add(checkpoint.scenario);
   writer.Add(checkpoint.exchange);
   writer.Add(checkpoint.state_digest);
+  writer.Add(checkpoint.at_time_zero.mean_position_m);
+  writer.Add(checkpoint.at_time_zero.stored_energy_j);
   Add(checkpoint.vehicles, writer);
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.brake);
@@ -107,11 +129,20 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
 }
 
 TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
-  ByteReader reader = ReaderOf(bytes, kTrainMark, "a checkpoint of a train");
+  const std::uint64_t format = FormatOf(bytes, kTrainMark, "a checkpoint of a train");
+  if (format != kTrainFormat) {
+    throw SnapshotError(
+        "is a checkpoint of format version " + std::to_string(format) + ", written by " + WriterOf(bytes) +
+        "; this program, train_brake " TRAIN_BRAKE_VERSION ", reads version " + std::to_string(kTrainFormat) +
+        ": finish the run with the build that wrote it, or run its config.yaml again");
+  }
+  ByteReader reader = ReaderOf(bytes);
   TrainCheckpoint checkpoint;
   checkpoint.scenario = reader.Text();
   checkpoint.exchange = reader.Word();
   checkpoint.state_digest = reader.Word();
+  checkpoint.at_time_zero.mean_position_m = reader.Number();
+  checkpoint.at_time_zero.stored_energy_j = reader.Number();
   checkpoint.vehicles = States(reader);
   checkpoint.connections = reader.Numbers();
   checkpoint.brake = reader.Numbers();

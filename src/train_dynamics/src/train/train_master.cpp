@@ -49,6 +49,7 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   last_speed_mps_ = reply_.speed_mps;
   exchange_ = first_exchange_ = checkpoint.exchange;
   digest_ = checkpoint.state_digest;
+  record_.at_time_zero = checkpoint.at_time_zero;
 }
 
 void TrainMaster::AskForCheckpoint() {
@@ -60,6 +61,7 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   TrainCheckpoint checkpoint;
   checkpoint.exchange = exchange_;
   checkpoint.state_digest = digest_;
+  checkpoint.at_time_zero = record_.at_time_zero;
   checkpoint.vehicles = reply_.snapshot;
   checkpoint.connections = forces_.Memory();
   MemoryWriter brake;
@@ -131,6 +133,7 @@ void TrainMaster::ShowRecord() {
   record.state_digest = digest_;
   record.ledger.reset();
   if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
+  if (exchange_ == 0) record.at_time_zero = {record.mean_position_m, record.ledger->Stored()};
   for (const Observer& observer : observers_) observer(record);
 }
 

@@ -34,7 +34,6 @@ class BagRecorder {
   BagWriter bag_;
   int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
   std::map<int, int> wagon_topic_;  ///< by vehicle
-  double initial_j_ = 0.0;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;

@@ -16,10 +16,8 @@ namespace train_results {
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainState& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::InTrainForces& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::BrakePressures& message);
-
-/// @param initial_j  energy of the train at time 0 [J]
-void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::EnergyLedger& ledger,
-             double initial_j, train_brake_msgs::EnergyLedger& message);
+/// Of a record with a ledger.
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::EnergyLedger& message);
 
 void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
              train_brake_msgs::WagonState& message);

@@ -20,8 +20,6 @@ class RunSummary {
   /// @param fault  why the run ended early; empty: it did not, or was interrupted
   std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
 
-  double initial_energy_j() const { return initial_energy_j_; }
-
   /// What the summary of the whole run needs to know of its beginning.
   std::vector<double> Memory() const;
   /// @throws SnapshotError if it is not such
@@ -37,13 +35,11 @@ class RunSummary {
   bool HasStopped() const { return stop_time_s_ == stop_time_s_; }
 
   const ScenarioParams& scenario_;
-  double start_position_m_ = 0.0;  ///< mean
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
   int vehicles_ = 0;
   double stop_time_s_ = kNone, stop_distance_m_ = kNone;  ///< NaN: has not stopped, or moves again
-  double initial_energy_j_ = 0.0;
-  EnergyLedger ledger_;  ///< the last one
+  EnergyLedger ledger_;                                   ///< the last one
   std::uint64_t state_digest_ = 0;
 };
 

@@ -20,12 +20,19 @@ struct BlockSnapshot {
   std::vector<StateRow> states;  ///< [vehicle of the block], see VehicleBlock::Save
 };
 
+/// The train at time 0 of its run, to which its later records are compared.
+struct TimeZero {
+  double mean_position_m = 0.0;  ///< of the vehicles' masses, along the track
+  double stored_energy_j = 0.0;  ///< kinetic and potential, see EnergyLedger::Stored
+};
+
 /// The state of a whole train and of its books at the beginning of an exchange. Vehicles are not tied to the
 /// ranks that they were in.
 struct TrainCheckpoint {
-  std::string scenario;             ///< what it is of, word for word
-  std::uint64_t exchange = 0;       ///< the next one; follows a record
-  std::uint64_t state_digest = 0;   ///< chained over all records so far
+  std::string scenario;            ///< what it is of, word for word; its first line is "# PROGRAM VERSION"
+  std::uint64_t exchange = 0;      ///< the next one; follows a record
+  std::uint64_t state_digest = 0;  ///< chained over all records so far
+  TimeZero at_time_zero;
   std::vector<StateRow> vehicles;   ///< [vehicle], see VehicleBlock::Save
   std::vector<double> connections;  ///< InTrainForces::Memory
   std::vector<double> brake;        ///< BrakeSystem::ForEachField
@@ -40,7 +47,8 @@ void CheckRows(const std::vector<StateRow>& rows, int vehicles);
 Bytes Encode(const BlockSnapshot& snapshot);
 Bytes Encode(const TrainCheckpoint& checkpoint);
 
-/// @throws SnapshotError if the bytes are something else, of another version, cut short or damaged
+/// @throws SnapshotError if the bytes are something else, of another version, cut short or damaged. Of a checkpoint of
+/// another format version it names the program that wrote it.
 BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes);
 TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes);
 

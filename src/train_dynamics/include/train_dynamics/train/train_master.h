@@ -27,6 +27,7 @@ struct TrainRecord {
   std::vector<double> cylinder_pressure_pa;  ///< [vehicle] at time_s
   std::uint64_t state_digest = 0;            ///< chained over all records so far
   std::optional<EnergyLedger> ledger;        ///< where one is due
+  TimeZero at_time_zero;                     ///< of the run, also where it was resumed later
 };
 
 /// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.
@@ -63,6 +64,8 @@ class TrainMaster {
 
   double time_s() const { return static_cast<double>(exchange_) * scenario_.exchange_interval_s; }
   std::uint64_t exchange() const { return exchange_; }
+  /// All 0 before Start or Resume.
+  const TimeZero& at_time_zero() const { return record_.at_time_zero; }
   /// When this run began: later than 0 if it was resumed.
   double start_s() const { return static_cast<double>(first_exchange_) * scenario_.exchange_interval_s; }
   const InTrainForces& in_train_forces() const { return forces_; }

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/train/run_summary.h"
+#include "train_dynamics/train/train_master.h"
+#include "train_results/run_output.h"
+#include "train_run/exit_code.h"
+
+namespace train_run {
+
+/// Results could not be written. The text says which and why.
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the owner of a run decides between two exchanges.
+struct RunHooks {
+  /// Asked before each exchange, whether the run is to end there.
+  std::function<bool()> ends = [] { return false; };
+  /// Whether the next exchange may begin now. If not, it has waited a moment, and is asked again after `ends`.
+  std::function<bool()> admits = [] { return true; };
+  /// Called after each exchange, with its wall time [s].
+  std::function<void(double)> exchanged = [](double) {};
+  /// Called once in each turn of the loop, whether or not there was an exchange.
+  std::function<void()> turned = [] {};
+};
+
+/// A run of a train, once: from time 0 or from a checkpoint, exchange by exchange, to its end or to an interruption.
+/// Keeps its summary, feeds its results and leaves its checkpoints.
+class TrainRun {
+ public:
+  /// Keeps references: all but the brake must outlive the run.
+  /// @param from    the checkpoint from which it goes on; null: it begins at time 0
+  /// @param output  its results; null: none are written
+  TrainRun(const train_dynamics::ScenarioParams& scenario, const train_dynamics::Consist& consist,
+           train_dynamics::Transport& transport, train_dynamics::BrakeSystem brake,
+           const train_dynamics::TrainCheckpoint* from = nullptr, train_results::RunOutput* output = nullptr);
+
+  /// Called for every record, after the summary and the results have got it.
+  void AddObserver(train_dynamics::TrainMaster::Observer observer) {
+    master_.AddObserver(std::move(observer));
+  }
+
+  /// Runs until the end, or until `hooks.ends`; then, where checkpoints are kept, on to the next record and to a
+  /// checkpoint there, for `patience` of wall time at most.
+  ///
+  /// A fault of the simulation or of the results ends the run and is kept (see fault, write_error); other exceptions,
+  /// of the transport, pass through. Finish comes after either.
+  void Go(const RunHooks& hooks, std::chrono::duration<double> patience = std::chrono::hours(24));
+
+  /// Completes the results. @param fault  why the run ended, where it is not one that Go has kept
+  /// @return the summary as JSON
+  std::string Finish(double wall_s, const std::string& fault = "");
+
+  const train_dynamics::TrainMaster& master() const { return master_; }
+  /// When it begins [s]: later than 0 if it goes on from a checkpoint.
+  double start_s() const;
+  /// Whether Go has reached an interruption, at which it goes on to a record.
+  bool ending() const { return ending_; }
+  /// Why the simulation broke down; empty: it did not.
+  const std::string& fault() const { return fault_; }
+  /// Why the results could not be written; empty: they could.
+  const std::string& write_error() const { return write_error_; }
+  ExitCode exit_code() const;
+
+ private:
+  void Begin();
+  void Loop(const RunHooks& hooks);
+  void LeaveCheckpoint(std::chrono::duration<double> patience);
+  /// One exchange, with its checkpoint where one is due or `wanted`. @return whether there was one
+  bool Exchange(bool wanted);
+
+  const train_dynamics::ScenarioParams& scenario_;
+  const train_dynamics::TrainCheckpoint* from_;
+  train_results::RunOutput* output_;
+  train_dynamics::TrainMaster master_;
+  train_dynamics::RunSummary summary_;
+  bool ending_ = false;
+  std::string fault_, write_error_;
+};
+
+}  // namespace train_run
