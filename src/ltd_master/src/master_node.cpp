@@ -139,8 +139,8 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
         "parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
   }
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
-  scenario_publisher_ = node.advertise<std_msgs::String>(kScenarioTopic, 1, true);
-  scenario_publisher_.publish(ScenarioMessage(scenario_.params));
+  scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
+  scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
   services_.push_back(own.advertiseService("resume", &MasterNode::OnResume, this));
