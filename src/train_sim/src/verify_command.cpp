@@ -7,8 +7,8 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -221,17 +221,28 @@ std::string Comparison::Verdict() const {
 }
 
 /// The digest in the summary.json of a whole run, where the recording is such a run's; else nothing.
+/// @throws train_results::UnreadableBag if summary.json is not the summary of a run
 std::optional<std::string> DigestInSummary(const fs::path& recording) {
   const fs::path file = FolderOf(recording) / "summary.json";
   if (!IsOfARun(recording) || !fs::exists(file)) return std::nullopt;
-  const std::string text = train_results::ReadPlainFile(file, 1 << 20);
-  static const std::regex pattern("\"complete\": true[^]*\"state_digest\": \"([0-9a-f]*)\"");
-  std::smatch match;
-  if (!std::regex_search(text, match, pattern)) return std::nullopt;
-  return match[1];
+  const auto refusal = [&file](const std::string& why) {
+    return train_results::UnreadableBag(file.string() + " " + why);
+  };
+  nlohmann::json summary;
+  try {
+    summary = nlohmann::json::parse(train_results::ReadPlainFile(file, 1 << 20));
+  } catch (const nlohmann::json::exception& e) {
+    throw refusal(std::string("is not JSON: ") + e.what());
+  }
+  if (!summary.is_object()) throw refusal("must hold a JSON object, the summary of a run");
+  const auto complete = summary.find("complete"), digest = summary.find("state_digest");
+  if (complete == summary.end() || !complete->is_boolean()) throw refusal("must say complete: true or false");
+  if (digest == summary.end() || !digest->is_string()) throw refusal("must have a state_digest, a text");
+  return *complete ? std::make_optional(digest->get<std::string>()) : std::nullopt;
 }
 
 int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
+  const std::optional<std::string> summarised = DigestInSummary(options.recording);
   LoadedScenario scenario = ScenarioOf(options, recorded);
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
   const ScenarioParams& params = scenario.params;
@@ -279,10 +290,9 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
     return train_run::kIncomplete;
   }
   const std::string digest = fmt::format("{:016x}", master.state_digest());
-  const std::string summarised = DigestInSummary(options.recording).value_or(digest);
-  if (summarised != digest) {
+  if (summarised && *summarised != digest) {
     fmt::print("different: the records are the same, but summary.json has the digest {}, now it is {}\n",
-               Presentable(summarised), digest);
+               Presentable(*summarised), digest);
     return train_run::kDifferent;
   }
   const std::string begin =

@@ -467,6 +467,24 @@ class TrainSimTest(unittest.TestCase):
             verdict = self.verify(recording, code=5)
             self.assertIn("summary.json has the digest 0123456789abcdef, now it is " + digest, verdict)
 
+    def test_verify_reads_any_json_in_summary_json(self):
+        """Saved again by another program, with more in it; or no summary at all."""
+        self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.5", "--model", "ltd")
+        file = self.out / "summary.json"
+        summary = json.loads(file.read_text())
+        file.write_text(json.dumps({"complete": True, "remark": "x" * 200000, **summary}, separators=(",", ":")))
+        self.assertIn("same", self.verify(self.out, code=0))
+        false = {key: summary[key] for key in reversed(summary)}
+        false["state_digest"] = "fedcba9876543210"
+        file.write_text(json.dumps(false, separators=(",", ":")))
+        self.assertIn("summary.json has the digest fedcba9876543210", self.verify(self.out, code=5))
+        for text, complaint in (("[]", "must hold a JSON object"), ("{}", "must say complete"),
+                                ('{"complete": true, "state_digest": 7}', "must have a state_digest"),
+                                ('{"complete": tr', "is not JSON"), ("[" * 100000, "is not JSON")):
+            with self.subTest(text[:30]):
+                file.write_text(text)
+                self.assertIn(complaint, self.verify(self.out, code=6))
+
     def test_verify_finds_the_pressure_table_beside_the_bag(self):
         first = pathlib.Path(self.folder.name) / "first"
         self.run_ok(EMERGENCY, "--csv", "--out", first, *SHORT)
