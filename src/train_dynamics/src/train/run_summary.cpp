@@ -13,6 +13,9 @@ namespace {
 constexpr double kStandstill = 1e-3;
 /// It is under way again when its mean speed exceeds this [m/s]: more than any rocking.
 constexpr double kMoving = 0.1;
+/// It has rolled back when it has come back from its furthest place by more than this [m]: more than a slack train does
+/// that stretches at rest.
+constexpr double kRolledBack = 0.5;
 constexpr double kKmhPerMps = 3.6;
 
 std::string Number(double value) {
@@ -69,21 +72,46 @@ void RunSummary::Observe(const TrainRecord& record) {
   lead_speed_mps_ = speed.front();
   tail_speed_mps_ = speed.back();
   mean_distance_m_ = record.mean_position_m - record.at_time_zero.mean_position_m;
-  const double forward_mps = scenario_.initial_speed_kmh < 0.0 ? -mean_speed_mps_ : mean_speed_mps_;
-  if (!HasStopped() && forward_mps <= kStandstill) {
-    stop_time_s_ = record.time_s;
-    stop_distance_m_ = mean_distance_m_;
-  } else if (HasStopped() && std::abs(mean_speed_mps_) > kMoving) {
-    stop_time_s_ = stop_distance_m_ = kNone;
-  }
+  JudgeMotion(record);
   if (record.ledger) ledger_ = *record.ledger;
   state_digest_ = record.state_digest;
 }
 
+void RunSummary::JudgeMotion(const TrainRecord& record) {
+  const bool turns = last_speed_mps_ * mean_speed_mps_ < 0.0;  // false where there is no record before
+  last_speed_mps_ = mean_speed_mps_;
+  if (!Stands() && (std::abs(mean_speed_mps_) <= kStandstill || turns)) {
+    stops_.push_back({record.time_s, mean_distance_m_, kNone});
+  }
+  // It may stop and be under way again within one record interval.
+  if (Stands() && std::abs(mean_speed_mps_) > kMoving) stops_.back().until_s = record.time_s;
+  furthest_m_ = std::max(furthest_m_, Forward() * mean_distance_m_);
+}
+
 template <class Self, class Function>
 void RunSummary::ForEachMemory(Self& self, Function& function) {
-  function(self.stop_time_s_);
-  function(self.stop_distance_m_);
+  function(self.furthest_m_);
+  function(self.last_speed_mps_);
+  for (auto& stop : self.stops_) {
+    function(stop.time_s);
+    function(stop.distance_m);
+    function(stop.until_s);
+  }
+}
+
+double RunSummary::Forward() const { return scenario_.initial_speed_kmh < 0.0 ? -1.0 : 1.0; }
+
+double RunSummary::BehindFurthest() const { return furthest_m_ - Forward() * mean_distance_m_; }
+
+bool RunSummary::RolledBack() const { return BehindFurthest() > kRolledBack; }
+
+std::string RunSummary::Stops() const {
+  std::string list;
+  for (const Stop& stop : stops_) {
+    list += std::string(list.empty() ? "" : ", ") + "{\"time_s\": " + Number(stop.time_s) +
+            ", \"distance_m\": " + Number(stop.distance_m) + ", \"until_s\": " + Number(stop.until_s) + "}";
+  }
+  return list;
 }
 
 std::vector<double> RunSummary::Memory() const {
@@ -93,6 +121,8 @@ std::vector<double> RunSummary::Memory() const {
 }
 
 void RunSummary::SetMemory(const std::vector<double>& memory) {
+  constexpr std::size_t kHead = 2, kStop = 3;  // numbers
+  stops_.assign(memory.size() > kHead ? (memory.size() - kHead) / kStop : 0, {kNone, kNone, kNone});
   MemoryReader reader(memory);
   ForEachMemory(*this, reader);
   reader.End();
@@ -119,9 +149,11 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"final_speed_kmh\": {\"mean\": " << Number(kKmhPerMps * mean_speed_mps_)
        << ", \"lead\": " << Number(kKmhPerMps * lead_speed_mps_)
        << ", \"tail\": " << Number(kKmhPerMps * tail_speed_mps_)
-       << "},\n  \"stopped\": " << (HasStopped() ? "true" : "false")
-       << ",\n  \"stop_time_s\": " << Number(stop_time_s_)
-       << ",\n  \"stop_distance_m\": " << Number(stop_distance_m_) << ",\n  \"max_tension_n\": "
+       << "},\n  \"stopped\": " << (Stands() ? "true" : "false")
+       << ",\n  \"stop_time_s\": " << Number(Stands() ? stops_.back().time_s : kNone)
+       << ",\n  \"stop_distance_m\": " << Number(Stands() ? stops_.back().distance_m : kNone)
+       << ",\n  \"stops\": [" << Stops() << "],\n  \"rolled_back\": " << (RolledBack() ? "true" : "false")
+       << ",\n  \"rolled_back_m\": " << Number(BehindFurthest()) << ",\n  \"max_tension_n\": "
        << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::tension_n,
                   &ForceExtremes::tension_time_s)
        << ",\n  \"max_compression_n\": "

@@ -32,14 +32,27 @@ class RunSummary {
 
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  bool HasStopped() const { return stop_time_s_ == stop_time_s_; }
+  void JudgeMotion(const TrainRecord& record);
+  double Forward() const;         ///< 1 or -1: the direction of the start
+  double BehindFurthest() const;  ///< [m] by how far the train has come back from its furthest place
+  bool RolledBack() const;
+  std::string Stops() const;  ///< as JSON objects
+
+  /// A time at which the train came to a stand.
+  struct Stop {
+    double time_s, distance_m;
+    double until_s;  ///< when it was under way again; NaN: it stands still
+  };
+  bool Stands() const { return !stops_.empty() && !(stops_.back().until_s == stops_.back().until_s); }
 
   const ScenarioParams& scenario_;
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
   int vehicles_ = 0;
-  double stop_time_s_ = kNone, stop_distance_m_ = kNone;  ///< NaN: has not stopped, or moves again
-  EnergyLedger ledger_;                                   ///< the last one
+  std::vector<Stop> stops_;
+  double furthest_m_ = 0.0;        ///< largest distance so far, in the direction of the start
+  double last_speed_mps_ = kNone;  ///< mean, at the record before; NaN: there is none
+  EnergyLedger ledger_;            ///< the last one
   std::uint64_t state_digest_ = 0;
 };
 
