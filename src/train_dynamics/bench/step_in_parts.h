@@ -28,7 +28,7 @@ class StepInParts {
   /// Springs and dampers, centre plates' rims and the wedges' springs.
   void Suspension() {
     elastic_ = ElasticForces(*wagon_, deflection_);
-    dissipative_ = DampingForces(*wagon_, deflection_, elastic_, rate0_);
+    dissipative_ = DampingForces<false>(*wagon_, deflection_, elastic_, rate0_);
   }
 
   /// The wedges' set-valued friction.
@@ -47,8 +47,8 @@ class StepInParts {
   /// The energy ledger's.
   void Books() {
     dissipative_.wedge = friction_.wedge;
-    BookWork(*wagon_, outer_, wheelsets_, dissipative_, rate0_, dt_, v0_, v1_, s_.work);
-    BookTorques(*wagon_, outer_, wheelsets_, dt_, v0_, v1_, s_.work);
+    BookWork<false>(*wagon_, outer_, wheelsets_, dissipative_, rate0_, dt_, v0_, v1_, s_.work);
+    BookTorques<false>(*wagon_, outer_, wheelsets_, dt_, v0_, v1_, s_.work);
   }
 
   /// From bodies to elements.
@@ -61,7 +61,6 @@ class StepInParts {
   void Bodies() {
     v1_ = v0_;
     SumForces();
-    AddReactions(*wagon_, outer_, wheelsets_, force_);
     Kick(*wagon_, force_, dt_, kCarbody, kWheelset1, v1_);
     free_rate_ = ElementsOf(*wagon_, v1_);
     Wedges();

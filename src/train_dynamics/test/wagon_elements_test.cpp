@@ -160,7 +160,7 @@ TEST(Elements, DampersOnlyTakeEnergy) {
   for (int i = 0; i < 500; ++i) {
     const ElementVector<double> deflection = RandomElements(random, 1e-3), rate = RandomElements(random, 0.5);
     const ElementVector<double> elastic = ElasticForces(PaperWagon(), deflection);
-    const ElementVector<double> damping = DampingForces(PaperWagon(), deflection, elastic, rate);
+    const ElementVector<double> damping = DampingForces<true>(PaperWagon(), deflection, elastic, rate);
     EXPECT_GE((Row(damping).array() * Row(rate).array()).minCoeff(), 0.0);
     for (int k = 0; k < 4; ++k) EXPECT_GE(elastic.rim[k] + damping.rim[k], 0.0);  // the plate never pulls
   }
@@ -205,8 +205,8 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
         const ElementVector<double> rates = ElementsOf(w, change);
         response.col(end) << rates.wedge[2 * bogie], rates.wedge[2 * bogie + 1];
         const double spring =
-            WedgeSpringForce(*w.params.friction_wedge, w.wedge->kappa * p.deflection[2 * bogie + end]);
-        const auto bounds = WedgeFriction(*w.wedge, 2.0 * spring, p.rate[2 * bogie + end]);
+            WedgeSpringForce(*w.params.friction_wedge, w.wedge.kappa * p.deflection[2 * bogie + end]);
+        const auto bounds = WedgeFriction(w.wedge, 2.0 * spring, p.rate[2 * bogie + end]);
         lower[end] = bounds.lower;
         upper[end] = bounds.upper;
       }

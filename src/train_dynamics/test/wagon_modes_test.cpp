@@ -49,7 +49,7 @@ TEST(WagonModes, CountsEveryFreedom) {
 }
 
 TEST(WagonModes, BounceIsThatOfOneMassOnSpringsInSeries) {
-  const double kappa = SmoothWagon().wedge->kappa;
+  const double kappa = SmoothWagon().wedge.kappa;
   const double nests = 8.0 * (1590e3 + 566e3 + kappa * kappa * (983e3 + 566e3));
   const double series = 1.0 / (1.0 / nests + 1.0 / (8.0 * 3e7) + 1.0 / (8.0 * 6e8) + 1.0 / (2.0 * 4e8));
   const double bounce = std::sqrt(series / 147599.8) / (2.0 * std::acos(-1.0));
@@ -65,7 +65,7 @@ TEST(WagonModes, PitchIsThatOfACarbodyOnTwoBogies) {
   // it. They turn with it too, held down by its rims, on nests and wedges before and behind their centres.
   // And both bogies must follow lengthways, for the guides are 2.0 m - 0.55 m below the carbody's centre.
   const double a = 3.4825, arm = 2.0 - 0.55;
-  const double kappa = SmoothWagon().wedge->kappa;
+  const double kappa = SmoothWagon().wedge.kappa;
   const double nest = 1590e3 + 566e3, wedge = kappa * kappa * (983e3 + 566e3);
   const double bogie =
       1.0 / (1.0 / (4.0 * (nest + wedge)) + 1.0 / (4.0 * 3e7) + 1.0 / (4.0 * 6e8) + 1.0 / 4e8);

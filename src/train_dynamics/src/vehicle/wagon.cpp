@@ -49,10 +49,13 @@ VerticalVector<kPerBogie> VerticalForces(const BogieVehicle<kPerBogie>& w,
   return f;
 }
 
+/// In the place of wedges where a vehicle has none: without springs, without forces.
+constexpr FrictionWedgeParams kNoWedge = {0.0, 0.0, 0.0, 45.0, 0.0, 0.0, 0.0, 1.0, 1.0};
+
 /// The wedges of a bogie are solved by sweeps, whose number suits a weak coupling (WedgeFrictionForces).
 template <int kPerBogie>
 void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
-  const double offset = w.wedge->params.offset_m;
+  const double offset = w.wedge.params.offset_m;
   const double both = w.inv_mass_per_kg[kFrontBolster] + w.inv_mass_per_kg[kFrontFrame];
   const double turn =
       offset * offset * (w.inv_inertia_per_kgm2[kFrontBolster] + w.inv_inertia_per_kgm2[kFrontFrame]);
@@ -68,13 +71,13 @@ void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
 }  // namespace
 
 template <int kPerBogie>
-BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle) : params(vehicle) {
+BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
+    : params(vehicle), wedge(vehicle.friction_wedge.value_or(kNoWedge)) {
   strict_config::Validate(params);
   if (params.wheelsets_per_bogie != kPerBogie) {
     throw std::invalid_argument("wheelsets_per_bogie must be " + std::to_string(kPerBogie) + ", got " +
                                 std::to_string(params.wheelsets_per_bogie));
   }
-  if (params.friction_wedge) wedge.emplace(*params.friction_wedge);
   const VehicleParams& p = params;
   const auto set_body = [this](int i, double mass, double inertia) {
     mass_kg[i] = mass;
@@ -99,7 +102,7 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle) : params(veh
   for (int i = 0; i < kQuarters; ++i) {
     const double end = i % 2 == 0 ? 1.0 : -1.0;
     nest_offset_m[i] = end * p.spring_nest.offset_m;
-    wedge_offset_m[i] = wedge ? end * wedge->params.offset_m : 0.0;
+    wedge_offset_m[i] = end * wedge.params.offset_m;
     rim_offset_m[i] = end * p.centre_plate.rim_offset_m;
   }
   pad_frame_arm_m = p.wheelset.wheel_radius_m - p.bogie_frame.cg_height_m;
@@ -108,7 +111,7 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle) : params(veh
   plate_carbody_arm_m = p.centre_plate.height_m - p.carbody.cg_height_m;
   plate_bolster_arm_m = p.centre_plate.height_m - p.bolster.cg_height_m;
   coupler_arm_m = p.coupler_height_m - p.carbody.cg_height_m;
-  if (wedge) CheckWedgeCoupling(*this);
+  if (params.friction_wedge) CheckWedgeCoupling(*this);
   weight_n = p.Weight();
   creep_stiffness = CreepStiffnessOf(p);
   rolling = {p.wheelset.wheel_radius_m, 1.0 / p.wheelset.mass_kg, 1.0 / p.wheelset.pitch_inertia_kgm2};
@@ -178,7 +181,7 @@ double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track,
   }
   for (int i = 0; i < kQuarters; ++i) {
     energy += 2.0 * SpringNestEnergy(p.spring_nest, e.nest[i]);
-    if (w.wedge) energy += 2.0 * WedgeSpringEnergy(w.wedge->params, w.wedge->kappa * e.wedge[i]);
+    energy += 2.0 * WedgeSpringEnergy(w.wedge.params, w.wedge.kappa * e.wedge[i]);
     energy += RimEnergy(p.centre_plate, e.rim[i]);
   }
   for (int b = 0; b < kBogies; ++b) {

@@ -38,7 +38,7 @@ Vector Forces(const BogieVehicle<kPerBogie>& w, const Vector& position, const Ve
   const ElementVector<double, kPerBogie> elastic = ElasticForces(w, deflection);
   BodyVector<double, kPerBogie> force;
   AddElementForces(w, elastic, force);
-  AddElementForces(w, DampingForces(w, deflection, elastic, ElementsOf(w, v)), force);
+  AddElementForces(w, DampingForces<true>(w, deflection, elastic, ElementsOf(w, v)), force);
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   for (int b = kWheelset1; b < kBodiesOf<kPerBogie>; ++b) {
     force.z[b] += 2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, -q.z[b], -v.z[b]);

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/vehicle/absurd.h"
@@ -126,7 +125,7 @@ struct BogieVehicle {
   }();
 
   VehicleParams params;
-  std::optional<FrictionWedge> wedge;
+  FrictionWedge wedge;  ///< without springs, hence without forces, where there are no wedges
   std::array<double, kBodies> mass_kg, inv_mass_per_kg;
   std::array<double, kBodies> inertia_kgm2, inv_inertia_per_kgm2;
   std::array<double, kWheelsets> wheelset_offset_m;  ///< from the wagon's centre, forward positive
@@ -139,6 +138,12 @@ struct BogieVehicle {
   double weight_n;
   double creep_stiffness;  ///< see CreepStiffness
   RollingInertia rolling;
+
+  /// Whether no torque on a wheelset reacts on the vehicle and no nest has a damper, as in the paper's wagon.
+  bool IsPlain() const {
+    return params.brake_rigging.reaction == BrakeReaction::kNone &&
+           params.spring_nest.damping_ns_per_m == 0.0;
+  }
 };
 
 using Wagon = BogieVehicle<2>;
@@ -237,11 +242,11 @@ ElementVector<T, kPerBogie> ElasticForces(const BogieVehicle<kPerBogie>& w,
   }
   for (int i = 0; i < kQuarters; ++i) {  // each quarter twice: left and right
     force.nest[i] = 2.0 * SpringNestForce(p.spring_nest, deflection.nest[i]);
-    if (w.wedge) {
-      force.wedge[i] =
-          (2.0 * w.wedge->kappa) * WedgeSpringForce(w.wedge->params, w.wedge->kappa * deflection.wedge[i]);
-    }
     force.rim[i] = RimForce(p.centre_plate, deflection.rim[i], T(0.0));
+  }
+  for (int i = 0; i < kQuarters; ++i) {
+    force.wedge[i] =
+        (2.0 * w.wedge.kappa) * WedgeSpringForce(w.wedge.params, w.wedge.kappa * deflection.wedge[i]);
   }
   for (int b = 0; b < kBogies; ++b) {
     force.guide_x[b] = p.bolster_guide.stiffness_n_per_m * deflection.guide_x[b];
@@ -251,7 +256,8 @@ ElementVector<T, kPerBogie> ElasticForces(const BogieVehicle<kPerBogie>& w,
 }
 
 /// Forces of the linear dampers; one-sided where the contact is (its whole force stays >= 0).
-template <class T, int kPerBogie>
+/// @tparam kAll  see StepWagonWith
+template <bool kAll, class T, int kPerBogie>
 ElementVector<T, kPerBogie> DampingForces(const BogieVehicle<kPerBogie>& w,
                                           const ElementVector<T, kPerBogie>& deflection,
                                           const ElementVector<T, kPerBogie>& elastic,
@@ -263,10 +269,10 @@ ElementVector<T, kPerBogie> DampingForces(const BogieVehicle<kPerBogie>& w,
     force.pad_z[i] = 2.0 * p.adaptor_pad.damping_ns_per_m * rate.pad_z[i];
   }
   for (int i = 0; i < kQuarters; ++i) {
-    if (p.spring_nest.damping_ns_per_m > 0.0) {
-      force.nest[i] = 2.0 * p.spring_nest.damping_ns_per_m * rate.nest[i];
-    }
     force.rim[i] = RimForce(p.centre_plate, deflection.rim[i], rate.rim[i]) - elastic.rim[i];
+  }
+  if (kAll && p.spring_nest.damping_ns_per_m > 0.0) {
+    for (int i = 0; i < kQuarters; ++i) force.nest[i] = 2.0 * p.spring_nest.damping_ns_per_m * rate.nest[i];
   }
   for (int b = 0; b < kBogies; ++b) {
     force.guide_x[b] = p.bolster_guide.damping_ns_per_m * rate.guide_x[b];

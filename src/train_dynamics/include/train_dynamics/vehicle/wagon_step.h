@@ -24,6 +24,13 @@ template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
+/// The same, compiled for a kind of vehicle.
+/// @tparam kAll  false: leaves out what plain vehicles have not (BogieVehicle::IsPlain), for which the bits are the
+///               same and the time is less
+template <bool kAll, class T, int kPerBogie>
+void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
+                   double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// q += h v
@@ -82,18 +89,17 @@ std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
                                              const std::array<T, kQuarters>& free_rate, double dt) {
   constexpr int kSweeps = 4;
   std::array<T, kQuarters> f{};
-  if (!w.wedge) return f;
   for (int bogie = 0; bogie < kBogies; ++bogie) {
     const int bolster = kFrontBolster + bogie, frame = kFrontFrame + bogie;
     const double a = w.inv_mass_per_kg[bolster] + w.inv_mass_per_kg[frame];
-    const double offset = w.wedge->params.offset_m;
+    const double offset = w.wedge.params.offset_m;
     const double b = offset * offset * (w.inv_inertia_per_kgm2[bolster] + w.inv_inertia_per_kgm2[frame]);
     const double own = dt * (a + b), other = dt * (a - b), inv_own = 1.0 / own;
     WedgeFrictionBounds<T> bounds[2];
     for (int end = 0; end < 2; ++end) {
-      const T travel = w.wedge->kappa * deflection[2 * bogie + end];
+      const T travel = w.wedge.kappa * deflection[2 * bogie + end];
       bounds[end] =
-          WedgeFriction(*w.wedge, 2.0 * WedgeSpringForce(w.wedge->params, travel), rate[2 * bogie + end]);
+          WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.wedge.params, travel), rate[2 * bogie + end]);
     }
     const T c0 = free_rate[2 * bogie], c1 = free_rate[2 * bogie + 1];
     T f0(0.0), f1(0.0);
@@ -166,14 +172,39 @@ void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& oute
   force.pitch[kCarbody] = force.pitch[kCarbody] + w.coupler_arm_m * outer.coupler;
 }
 
+/// Friction of the shoes of each wheelset [N], >= 0.
+template <class T, int kPerBogie = 2>
+struct ShoeForces {
+  std::array<T, kWheelsetsOf<kPerBogie>> turning;   ///< on the wheels as they turn
+  std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels that stand, >= turning
+};
+
+template <class T, int kPerBogie>
+ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
+                                      const BodyVector<T, kPerBogie>& v0) {
+  const BrakeRiggingParams& rigging = w.params.brake_rigging;
+  ShoeForces<T, kPerBogie> shoes;
+  if (rigging.friction_speed == FrictionSpeed::kVehicle) {
+    for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) shoes.turning[i] = shoes.standing[i] = outer.shoes;
+    return shoes;
+  }
+  const T standing = outer.shoe_load * rigging.shoe_friction.standstill_friction_coefficient;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const T tread = w.rolling.radius_m * v0.pitch[kWheelset1 + i];
+    shoes.turning[i] = outer.shoe_load * ShoeFriction(rigging.shoe_friction, tread);
+    shoes.standing[i] = standing;
+  }
+  return shoes;
+}
+
 /// What a step made of the wheelsets.
 template <class T, int kPerBogie = 2>
 struct WheelsetStep {
-  using PerWheelset = std::array<T, kWheelsetsOf<kPerBogie>>;
-  PerWheelset shoes{};  ///< largest friction of the shoes of each [N], >= 0
-  PerWheelset
-      mobilised{};       ///< the share of the retarding torque that acts, -1 ... 1; forward turning: positive
-  T creep{}, contact{};  ///< energy lost in creep and in the contacts' dampers [J]
+  ShoeForces<T, kPerBogie> shoes;
+  /// The share of the retarding torque that acts, -1 ... 1; forward turning: positive.
+  std::array<T, kWheelsetsOf<kPerBogie>> mobilised;
+  std::array<T, kWheelsetsOf<kPerBogie>> path;  ///< at the tread, of the rotation [m]
+  T creep{}, contact{};                         ///< energy lost in creep and in the contacts' dampers [J]
 };
 
 /// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
@@ -214,24 +245,17 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
   const WheelRailParams& contact = w.params.wheel_rail;
   const double r = w.rolling.radius_m;
   const double v_ref = contact.creepage_regularisation_speed_mps;
-  const BrakeRiggingParams& rigging = w.params.brake_rigging;
-  const bool by_tread = rigging.friction_speed == FrictionSpeed::kTread;
   WheelsetStep<T, kPerBogie> step;
+  step.shoes = ShoeForcesOn(w, outer, v0);
   std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
   bool mixed = false;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     mixed |= rail.surface[i].adhesion == nullptr;
     const T push = force.x[b] - rail.normal[i] * rail.slope[i];
-    T shoes = outer.shoes, holding_shoes = shoes;
-    if (by_tread) {
-      shoes = outer.shoe_load * ShoeFriction(rigging.shoe_friction, r * v0.pitch[b]);
-      holding_shoes = outer.shoe_load * rigging.shoe_friction.standstill_friction_coefficient;
-    }
-    step.shoes[i] = shoes;
     rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
-                  r * (shoes + outer.rolling + outer.dynamic_brake + outer.curving),
-                  r * (holding_shoes + outer.rolling + outer.dynamic_brake + outer.curving)};
+                  r * (step.shoes.turning[i] + outer.rolling + outer.dynamic_brake + outer.curving),
+                  r * (step.shoes.standing[i] + outer.rolling + outer.dynamic_brake + outer.curving)};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
       mixed ? RollOnMixedSurfaces(w, rail, rolling, dt, v0)
@@ -249,14 +273,15 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
     const T turned = 0.5 * dt * (v0.pitch[b] + out.spin);
     const T moved = 0.5 * dt * (v0.x[b] + out.speed);
     const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
+    step.path[i] = r * turned;
     step.mobilised[i] = out.brake_torque / Max(T(1e-300), rolling[i].brake_torque);
-    step.creep = step.creep + out.creep_force * (moved - r * turned);
+    step.creep = step.creep + out.creep_force * (moved - step.path[i]);
     step.contact = step.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
       output->creep_force_n[i] = out.creep_force;
       output->creepage[i] = (out.speed - r * out.spin) / Sqrt(out.speed * out.speed + v_ref * v_ref);
-      output->shoe_force_n[i] = step.shoes[i] * step.mobilised[i];
+      output->shoe_force_n[i] = step.shoes.turning[i] * step.mobilised[i];
     }
   }
   return step;
@@ -274,38 +299,43 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   const BrakeReaction reaction = w.params.brake_rigging.reaction;
   if (reaction == BrakeReaction::kNone) return;
   const double r = w.rolling.radius_m;
-  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
-    const int frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+  for (int bogie = 0; bogie < kBogies; ++bogie) {
+    T shoes(0.0), others(0.0);
+    for (int i = kPerBogie * bogie; i < kPerBogie * (bogie + 1); ++i) {
+      shoes = shoes + wheelsets.mobilised[i] * wheelsets.shoes.turning[i];
+      others = others + (wheelsets.mobilised[i] * (outer.rolling + outer.dynamic_brake) - outer.traction);
+    }
+    const int frame = kFrontFrame + bogie;
     const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
-    const T& share = wheelsets.mobilised[i];
-    force.pitch[hanger] = force.pitch[hanger] + r * (share * wheelsets.shoes[i]);
-    force.pitch[frame] =
-        force.pitch[frame] + r * (share * (outer.rolling + outer.dynamic_brake) - outer.traction);
+    force.pitch[hanger] = force.pitch[hanger] + r * shoes;
+    force.pitch[frame] = force.pitch[frame] + r * others;
   }
 }
 
 /// Books the work of the torques on the wheelsets: of each with the rotation of the wheelset relative to the
 /// body that it reacts on.
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                  const WheelsetStep<T, kPerBogie>& wheelsets, double dt, const BodyVector<T, kPerBogie>& v0,
                  const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
   const BrakeReaction reaction = w.params.brake_rigging.reaction;
-  const double half = 0.5 * dt * w.rolling.radius_m;
-  T shoes(0.0), curving(0.0), bearing_path(0.0), traction_path(0.0);
-  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
-    const int b = kWheelset1 + i, frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
-    const T path = half * (v0.pitch[b] + v1.pitch[b]);
-    T of_shoes = path, of_frame = path;
-    if (reaction != BrakeReaction::kNone) {
-      of_frame = path - half * (v0.pitch[frame] + v1.pitch[frame]);
-      of_shoes = reaction == BrakeReaction::kFrame ? of_frame
-                                                   : path - half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
+  // Paths at the tread [m]: relative to the rail, to the frame, to what the shoes hang on.
+  std::array<T, kWheelsetsOf<kPerBogie>> of_frame = wheelsets.path, of_shoes = wheelsets.path;
+  if (kAll && reaction != BrakeReaction::kNone) {
+    const double half = 0.5 * dt * w.rolling.radius_m;
+    const T carbody = half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
+    for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+      const int frame = kFrontFrame + BogieOfWheelset<kPerBogie>(i);
+      of_frame[i] = wheelsets.path[i] - half * (v0.pitch[frame] + v1.pitch[frame]);
+      of_shoes[i] = reaction == BrakeReaction::kFrame ? of_frame[i] : wheelsets.path[i] - carbody;
     }
-    shoes = shoes + wheelsets.shoes[i] * (wheelsets.mobilised[i] * of_shoes);
-    bearing_path = bearing_path + wheelsets.mobilised[i] * of_frame;
-    curving = curving + outer.curving * (wheelsets.mobilised[i] * path);
-    traction_path = traction_path + of_frame;
+  }
+  T shoes(0.0), rail_path(0.0), bearing_path(0.0), traction_path(0.0);
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    shoes = shoes + wheelsets.shoes.turning[i] * (wheelsets.mobilised[i] * of_shoes[i]);
+    bearing_path = bearing_path + wheelsets.mobilised[i] * of_frame[i];
+    rail_path = rail_path + wheelsets.mobilised[i] * wheelsets.path[i];
+    traction_path = traction_path + of_frame[i];
   }
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
@@ -313,13 +343,13 @@ void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   book(kBrakeShoes, shoes);
   book(kDynamicBrake, outer.dynamic_brake * bearing_path);
   book(kRollingResistance, outer.rolling * bearing_path);
-  book(kCurvingResistance, curving);
+  book(kCurvingResistance, outer.curving * rail_path);
   work.traction = work.traction + outer.traction * traction_path;
 }
 
 /// Books the work of a step but for the torques: force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
               const WheelsetStep<T, kPerBogie>& wheelsets, const ElementVector<T, kPerBogie>& dissipative,
               const ElementVector<T, kPerBogie>& rate0, double dt, const BodyVector<T, kPerBogie>& v0,
@@ -352,7 +382,7 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   book(kBolsterGuides, guides);
   book(kCentrePlates, plates);
   book(kAirDrag, lost(outer.drag, v0.x[kCarbody], v1.x[kCarbody]));
-  if (w.params.spring_nest.damping_ns_per_m > 0.0) {
+  if (kAll && w.params.spring_nest.damping_ns_per_m > 0.0) {
     T dampers(0.0);
     for (int i = 0; i < kQuarters; ++i) {
       dampers = dampers + lost(dissipative.nest[i], rate0.nest[i], rate1.nest[i]);
@@ -362,9 +392,9 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
 }
 
-template <class T, int kPerBogie>
-void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
-               WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+template <bool kAll, class T, int kPerBogie>
+void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads,
+                   double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
   const BodyVector<T, kPerBogie> v0 = s.velocity;
   BodyVector<T, kPerBogie>& v1 = s.velocity;
   Drift(v0, 0.5 * dt, s.position);
@@ -373,7 +403,7 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
   const ElementVector<T, kPerBogie> deflection = ElementsOf(w, s.position);
   const ElementVector<T, kPerBogie> rate0 = ElementsOf(w, v0);
   const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
-  ElementVector<T, kPerBogie> dissipative = DampingForces(w, deflection, elastic, rate0);
+  ElementVector<T, kPerBogie> dissipative = DampingForces<kAll>(w, deflection, elastic, rate0);
   const RailForces<T, kPerBogie> rail = ContactForces(w, track, s);
   const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
   BodyVector<T, kPerBogie> force;
@@ -382,7 +412,7 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
   AddOuterForces(w, outer, force);
 
   const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
-  AddReactions(w, outer, wheelsets, force);
+  if (kAll) AddReactions(w, outer, wheelsets, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
@@ -397,8 +427,15 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
   Drift(v1, 0.5 * dt, s.position);
 
   dissipative.wedge = friction.wedge;
-  BookWork(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
-  BookTorques(w, outer, wheelsets, dt, v0, v1, s.work);
+  BookWork<kAll>(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
+  BookTorques<kAll>(w, outer, wheelsets, dt, v0, v1, s.work);
+}
+
+template <class T, int kPerBogie>
+void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+  const auto step = w.IsPlain() ? &StepWagonWith<false, T, kPerBogie> : &StepWagonWith<true, T, kPerBogie>;
+  step(w, track, loads, dt, s, output);
 }
 
 }  // namespace train_dynamics

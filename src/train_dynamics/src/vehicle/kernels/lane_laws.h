@@ -9,13 +9,13 @@
 /// with it by name, so: packs and plain pointers only.
 namespace train_dynamics {
 
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
           WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
-  StepWagon(wagon, track, loads, dt, state, output);
+  StepWagonWith<kAll>(wagon, track, loads, dt, state, output);
 }
 
-template <class T>
+template <bool kAll, class T>
 void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
   StepLtd(vehicle, track, loads, dt, state, output);
@@ -42,6 +42,13 @@ void StoreNumbers(const std::array<T, n>& values, double* place) {
     for (int lane = 0; lane < kLanesOf<T>; ++lane) place[lane * n + i] = lanes[lane];
   }
 }
+
+/// Whether a vehicle has only what the paper's has.
+template <int kPerBogie>
+bool IsPlain(const BogieVehicle<kPerBogie>& wagon) {
+  return wagon.IsPlain();
+}
+inline bool IsPlain(const LtdVehicle& /*vehicle*/) { return true; }
 
 /// Whether a load that few trains have is given.
 template <class T>
@@ -72,7 +79,8 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
   return loads;
 }
 
-template <class T, bool with_rare, class Vehicle>
+/// @tparam kAll  with the loads that few trains have, and with what a plain vehicle has not
+template <class T, bool kAll, class Vehicle>
 [[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
                                      int packs, const LoadPlaces& load_places,
                                      const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
@@ -86,11 +94,11 @@ template <class T, bool with_rare, class Vehicle>
     const int first = i * kLanesOf<T>;
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
-    const VehicleLoads<T> loads = LoadsAt<T, with_rare>(load_places, first);
+    const VehicleLoads<T> loads = LoadsAt<T, kAll>(load_places, first);
     for (int step = 1; step < steps; ++step) {
-      Step(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
+      Step<kAll>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
     }
-    Step(vehicle, track, loads, dt, pack, output);
+    Step<kAll>(vehicle, track, loads, dt, pack, output);
     const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
     ForEachReplyField([first](const RecordInfo& field, const auto& value,
                               double* place) { StoreNumbers(value, place + first * field.numbers); },
@@ -103,8 +111,8 @@ template <class T, bool with_rare, class Vehicle>
 template <class T, class Vehicle>
 bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
-  const auto step =
-      HasRareLoads<T>(loads) ? &StepPacksUnder<T, true, Vehicle> : &StepPacksUnder<T, false, Vehicle>;
+  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle) ? &StepPacksUnder<T, true, Vehicle>
+                                                                : &StepPacksUnder<T, false, Vehicle>;
   return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
 }
 
