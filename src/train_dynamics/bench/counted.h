@@ -27,6 +27,7 @@ class Counted {
  public:
   Counted() = default;
   Counted(double value) : value_(value) {}  // as a double converts to a pack
+  explicit operator double() const { return value_; }
   double value() const { return value_; }
 
   friend Counted operator+(Counted a, Counted b) { return ++g_counts.add, a.value_ + b.value_; }

@@ -43,7 +43,7 @@ TEST(Consist, LengthsAndUnits) {
   train.connection = Gears();
   VehicleParams locomotive = OreWagon();
   locomotive.length_m = 20.5;
-  train.consist = {{locomotive, 1, true, 1, {}}, {OreWagon(), 6, false, 3, Bar()}};
+  train.consist = {{locomotive, 1, 1, {}, std::nullopt, true}, {OreWagon(), 6, 3, Bar()}};
   const Consist consist(train);
   EXPECT_EQ(consist.centre_m, (std::vector<double>{0.0, -15.5, -26.0, -36.5, -47.0, -57.5, -68.0}));
   std::vector<bool> bars;
@@ -72,7 +72,7 @@ TEST(VehicleIndex, CountsFromBothEnds) {
 Consist Pairs(int pairs, const ConnectionParams& between = Gears(), const ConnectionParams& within = Bar()) {
   TrainParams train;
   train.connection = between;
-  train.consist = {{OreWagon(), 2 * pairs, false, 2, within}};
+  train.consist = {{OreWagon(), 2 * pairs, 2, within}};
   return Consist(train);
 }
 

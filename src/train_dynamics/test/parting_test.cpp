@@ -25,7 +25,7 @@ struct Pulled {
     params.strength_n = kStrength;
     TrainParams train;
     train.connection = std::move(params);
-    train.consist = {{OreWagon(), 2, false, 1, {}}};
+    train.consist = {{OreWagon(), 2, 1, {}}};
     return Consist(train);
   }
   /// One interval at a rate of the extension; the force held over it.
@@ -86,7 +86,7 @@ TEST(Parting, OpensTheBrakePipeAndBothPartsStopByAnEmergency) {
   master.AddObserver([&](const TrainRecord& record) {
     last_pressure_pa = record.cylinder_pressure_pa;
     for (const Parting& parting : master.in_train_forces().Partings()) {
-      EXPECT_LE(record.coupler_force_n[parting.connection + 1], 0.0);
+      EXPECT_LE(record.held.coupler_force_n[parting.connection + 1], 0.0);
     }
   });
   master.Start();

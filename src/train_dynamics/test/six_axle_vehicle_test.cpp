@@ -334,7 +334,7 @@ TEST_F(SixAxleTrain, RunsWithWagonsAndGivesTheSameBitsInAnyNumberOfThreads) {
     double initial_j = 0.0, residual_j = 0.0, wheel_force_n = 0.0;
     master.AddObserver([&](const TrainRecord& record) {
       wheel_force_n = record.vehicles.wheel_force_n[0];
-      if (record.ledger == nullptr) return;
+      if (!record.ledger) return;
       if (record.exchange == 0) initial_j = record.ledger->Stored();
       residual_j = record.ledger->Residual(initial_j);
     });

@@ -321,7 +321,8 @@ TEST(RailPatch, MixedPacksGiveTheBitsOfSingleWagons) {
   for (int step = 0; step < 6000; ++step) {
     VehicleLoads<double> loads;
     loads.cylinder_pressure_pa = 4e5;
-    for (WagonState<double>& s : scalar) StepWagon<double>(wagon, track, loads, 1e-3, s, nullptr);
+    WagonOutput<double>* const none = nullptr;
+    for (WagonState<double>& s : scalar) StepWagon(wagon, track, loads, 1e-3, s, none);
     VehicleLoads<Pack> pack_loads{};
     pack_loads.cylinder_pressure_pa = Pack(4e5);
     WagonOutput<Pack>* const no_output = nullptr;

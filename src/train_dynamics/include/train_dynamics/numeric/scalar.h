@@ -58,7 +58,7 @@ T Load(const double* from) {
 template <class T>
 void Store(const T& x, double* to) {
   if constexpr (kLanesOf<T> == 1) {
-    *to = x;
+    *to = static_cast<double>(x);
   } else {
     x.Store(to);
   }

@@ -131,7 +131,7 @@ CreepShape<T> ShapeOf(const RailSurface<T>& surface) {
 template <class T>
 double FirstLane(const T& x) {
   if constexpr (kLanesOf<T> == 1) {
-    return x;
+    return static_cast<double>(x);
   } else {
     return x[0];
   }
