@@ -49,7 +49,10 @@ RunControl::Reply RunControl::Step(std::uint64_t exchanges) {
   goal_ = end;
   const std::uint64_t decisions = decisions_;
   changed_.notify_all();
-  changed_.wait(lock, [&] { return completed_ >= end || ended_ || decisions_ != decisions; });
+  // A pause ends it once the train stands, a resumption at once.
+  changed_.wait(lock, [&] {
+    return completed_ >= end || ended_ || (decisions_ != decisions && !(paused_ && is_moving_));
+  });
   if (completed_ >= end) return {true, ""};
   const std::uint64_t done = completed_ > begin ? completed_ - begin : 0;
   return {false, fmt::format("{} after {} of {} exchanges, at {:.3f} s",

@@ -132,7 +132,7 @@ class View(unittest.TestCase):
                                  ("_scenario:=/no/such.yaml", "/no/such.yaml")):
             done = subprocess.run(["rosrun", "train_brake_rviz", "train_view", "__ns:=/wrong", parameter], timeout=20,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-            self.assertEqual(1, done.returncode, done.stdout)
+            self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn(words, done.stdout)
             rospy.delete_param("/wrong")
 

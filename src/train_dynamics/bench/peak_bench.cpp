@@ -44,7 +44,7 @@ void Stream(benchmark::State& state) {
   const auto wagons = static_cast<std::size_t>(state.range(0));
   std::vector<double> numbers(wagons * sizeof(WagonState<double>) / sizeof(double), 1.0);
   for (auto _ : state) {
-    for (std::size_t i = 0; i < numbers.size(); i += kNativeLanes) {
+    for (std::size_t i = 0; i + kNativeLanes <= numbers.size(); i += kNativeLanes) {
       (Pack::Load(&numbers[i]) + kSummand).Store(&numbers[i]);
     }
     benchmark::ClobberMemory();

@@ -560,9 +560,11 @@ TEST_F(ScenarioRules, AGroupHasItsOwnModelOrTheScenarios) {
 
 TEST_F(ScenarioRules, MixedModelsAreNamedInErrorsAndWarnings) {
   const std::string file = Scenario("emergency");
-  EXPECT_NE(ErrorsOf(file, {"train.consist[1].model=ldt"})
-                .find("train.consist[1].model must be one of 2d, ltd or ltd-no-inertia, got ldt"),
-            std::string::npos);
+  EXPECT_NE(
+      ErrorsOf(file, {"train.consist[1].model=ldt"})
+          .find(
+              "train.consist[1].model must be one of 2d, ltd, ltd-no-inertia, got 'ldt'; did you mean ltd?"),
+      std::string::npos);
   EXPECT_NE(ErrorsOf(file, {"model=ltd", "integrator=newmark", "train.consist[1].model=2d"})
                 .find("must be leapfrog for the 2d model"),
             std::string::npos);
