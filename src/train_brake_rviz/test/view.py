@@ -128,7 +128,7 @@ class View(unittest.TestCase):
 
     def test_wrong_parameters(self):
         for parameter, words in (("_quantity:=colour", "parameter quantity must be one of coupler_force, pressure"),
-                                 ("_vertical_exaggeration:=-2", "parameter vertical_exaggeration must be >= 0, got -2"),
+                                 ("_vertical_exaggeration:=-2", "parameter vertical_exaggeration must be >= 0 and finite, got -2"),
                                  ("_scenario:=/no/such.yaml", "/no/such.yaml")):
             done = subprocess.run(["rosrun", "train_brake_rviz", "train_view", "__ns:=/wrong", parameter], timeout=20,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
