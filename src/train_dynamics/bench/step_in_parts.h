@@ -23,7 +23,7 @@ class StepInParts {
   }
 
   /// Wheel-rail forces in the normal direction.
-  void Contact() { rail_ = ContactForces(*wagon_, *track_, s_); }
+  void Contact() { rail_ = ContactForces<false>(*wagon_, *track_, s_); }
 
   /// Springs and dampers, centre plates' rims and the wedges' springs.
   void Suspension() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <vector>
@@ -307,6 +308,29 @@ TEST(Standstill, HoldsWhereItStoppedOnAGrade) {
   EXPECT_NEAR(most, weight_component, 1e-6 * weight_component);
   for (int b = kWheelset1; b < kBodies; ++b) EXPECT_EQ(ride.state.velocity.pitch[b], 0.0);
   EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
+}
+
+// Plain vehicles on a plain track have a step of their own; what it leaves out must have been nothing.
+TEST(Wagon, WhatLiesFarAheadOnTheTrackChangesNoBit) {
+  TrackParams dip, patch;
+  dip.dips = {{1e5, 0.05, 10.0}};
+  patch.friction_patches = {{1e5, 1.1e5, 0.02}};
+  for (const TrackParams& far_ahead : {dip, patch}) {
+    Ride plain(OreWagon(), {}, 10.0), full(OreWagon(), far_ahead, 10.0);
+    ASSERT_TRUE(plain.track.IsPlain());
+    ASSERT_FALSE(full.track.IsPlain());
+    const auto loads = [](double time_s) {
+      VehicleLoads<double> braking;
+      braking.cylinder_pressure_pa = EmergencyPressure(time_s);
+      braking.front_coupler_n = 2e4 * std::sin(3.0 * time_s);
+      return braking;
+    };
+    plain.loads_at = full.loads_at = loads;
+    plain.Run(40.0);
+    full.Run(40.0);
+    EXPECT_LT(std::abs(plain.Speed()), 0.05);  // it stopped on the way
+    EXPECT_EQ(0, std::memcmp(&plain.state, &full.state, sizeof plain.state));
+  }
 }
 
 TEST(Adhesion, WheelsLockOnLowFrictionAndTurnAgainAfterIt) {

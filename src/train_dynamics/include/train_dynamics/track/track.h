@@ -54,6 +54,8 @@ class Track {
 
   bool has_dips = false;
   bool has_patches = false;
+  /// Whether the rail is level but for grades and has the vehicles' own surface all along.
+  bool IsPlain() const { return !has_dips && !has_patches; }
 
   /// A constant grade [-], rise over run, and where it holds.
   struct GradeStretch {
@@ -166,13 +168,21 @@ RailHeight<T> RailHeightUnder(const Track& track, const T& position_m) {
   return {Load<T>(height), Load<T>(slope)};
 }
 
+/// The surface outside of every patch: the vehicle's own.
+/// @param vehicle  must outlive what is returned
+template <class T>
+RailSurface<T> OwnSurface(const AdhesionParams& vehicle) {
+  RailSurface<T> surface;
+  surface.friction = T(vehicle.friction_coefficient);
+  surface.adhesion = &vehicle;
+  return surface;
+}
+
 /// The surface under one wheel of a vehicle, or under those of several equal vehicles side by side.
 /// @param vehicle  the vehicle's own surface, outside of every patch; must outlive what is returned
 template <class T>
 RailSurface<T> RailSurfaceUnder(const Track& track, const T& position_m, const AdhesionParams& vehicle) {
-  RailSurface<T> surface;
-  surface.friction = T(vehicle.friction_coefficient);
-  surface.adhesion = &vehicle;
+  RailSurface<T> surface = OwnSurface<T>(vehicle);
   if (!track.has_patches) return surface;
   const Track::SurfaceStretch first = track.SurfaceFrom(FirstLane(position_m), vehicle);
   if (AllOn(first.on, position_m)) {

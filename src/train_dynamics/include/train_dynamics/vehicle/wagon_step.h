@@ -25,8 +25,8 @@ void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const V
                double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
 /// The same, compiled for a kind of vehicle.
-/// @tparam kAll  false: leaves out what plain vehicles have not (BogieVehicle::IsPlain), for which the bits are the
-///               same and the time is less
+/// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) and a plain track (Track::IsPlain) do not
+///               have; on these the bits are the same and the time is less
 template <bool kAll, class T, int kPerBogie>
 void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                    double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
@@ -52,22 +52,27 @@ struct RailForces {
   std::array<RailSurface<T>, kWheelsetsOf<kPerBogie>> surface;
 };
 
-template <class T, int kPerBogie>
+/// @tparam kAll  see StepWagonWith
+template <bool kAll, class T, int kPerBogie>
 RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
                                        const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   RailForces<T, kPerBogie> rail;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
-    const RailHeight<T> point = RailHeightUnder(track, at);
+    RailHeight<T> point{T(0.0), T(0.0)};
+    rail.surface[i] = OwnSurface<T>(w.params.wheel_rail.adhesion);
+    if constexpr (kAll) {
+      const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
+      point = RailHeightUnder(track, at);
+      rail.surface[i] = RailSurfaceUnder(track, at, w.params.wheel_rail.adhesion);
+    }
     const T penetration = point.height - s.position.z[b];
     const T rate = point.slope * s.velocity.x[b] - s.velocity.z[b];
     rail.normal[i] =
         2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
     rail.damping[i] = rail.normal[i] - 2.0 * OneSidedForce(contact.stiffness_n_per_m, 0.0, penetration, rate);
     rail.slope[i] = point.slope;
-    rail.surface[i] = RailSurfaceUnder(track, at, w.params.wheel_rail.adhesion);
   }
   return rail;
 }
@@ -404,7 +409,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   const ElementVector<T, kPerBogie> rate0 = ElementsOf(w, v0);
   const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
   ElementVector<T, kPerBogie> dissipative = DampingForces<kAll>(w, deflection, elastic, rate0);
-  const RailForces<T, kPerBogie> rail = ContactForces(w, track, s);
+  const RailForces<T, kPerBogie> rail = ContactForces<kAll>(w, track, s);
   const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
   BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
@@ -434,7 +439,8 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
 template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
                WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
-  const auto step = w.IsPlain() ? &StepWagonWith<false, T, kPerBogie> : &StepWagonWith<true, T, kPerBogie>;
+  const auto step = w.IsPlain() && track.IsPlain() ? &StepWagonWith<false, T, kPerBogie>
+                                                   : &StepWagonWith<true, T, kPerBogie>;
   step(w, track, loads, dt, s, output);
 }
 

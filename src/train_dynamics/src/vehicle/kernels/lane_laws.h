@@ -43,12 +43,12 @@ void StoreNumbers(const std::array<T, n>& values, double* place) {
   }
 }
 
-/// Whether a vehicle has only what the paper's has.
+/// Whether a vehicle and its track have only what the paper's have.
 template <int kPerBogie>
-bool IsPlain(const BogieVehicle<kPerBogie>& wagon) {
-  return wagon.IsPlain();
+bool IsPlain(const BogieVehicle<kPerBogie>& wagon, const Track& track) {
+  return wagon.IsPlain() && track.IsPlain();
 }
-inline bool IsPlain(const LtdVehicle& /*vehicle*/) { return true; }
+inline bool IsPlain(const LtdVehicle& /*vehicle*/, const Track& /*track*/) { return true; }
 
 /// Whether a load that few trains have is given.
 template <class T>
@@ -79,7 +79,7 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
   return loads;
 }
 
-/// @tparam kAll  with the loads that few trains have, and with what a plain vehicle has not
+/// @tparam kAll  with the loads that few trains have, and with what a plain vehicle or a plain track does not have
 template <class T, bool kAll, class Vehicle>
 [[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
                                      int packs, const LoadPlaces& load_places,
@@ -111,8 +111,8 @@ template <class T, bool kAll, class Vehicle>
 template <class T, class Vehicle>
 bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
-  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle) ? &StepPacksUnder<T, true, Vehicle>
-                                                                : &StepPacksUnder<T, false, Vehicle>;
+  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle, track) ? &StepPacksUnder<T, true, Vehicle>
+                                                                       : &StepPacksUnder<T, false, Vehicle>;
   return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
 }
 
