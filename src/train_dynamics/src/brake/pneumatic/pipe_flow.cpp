@@ -78,8 +78,11 @@ void Advance(const PipeGrid& grid, double dt_s, PipeFlow& flow) {
   double* flux = flow.momentum_flux.data();
   const double* a = grid.area_over_length.data();
 
-  const double to_flux = 0.25 * grid.rt / grid.area_m2;
-  for (int i = 0; i < n; ++i) flux[i] = to_flux * (m[i] + m[i + 1]) * (m[i] + m[i + 1]) / p[i];
+  const double to_flux = 0.5 * grid.rt / grid.area_m2;
+  for (int i = 0; i < n; ++i) {
+    const double through = m[i] + m[i + 1];
+    flux[i] = to_flux * through * (through > 0.0 ? m[i] : m[i + 1]) / p[i];
+  }
 
   const double to_reynolds = grid.diameter_m / (grid.area_m2 * kViscosityOfAir);
   // f |m| / (2 D rho) = (f Re) viscosity / (2 D^2 rho), rho = (p[i-1] + p[i]) / (2 R T)

@@ -71,10 +71,10 @@ struct PipeFlow {
 ///   d m/dt + d(m^2/rho)/dx + c^2 d rho/dx + f |m| m / (2 D rho) = 0,     c^2 = R T, m = rho u
 ///
 /// on a staggered grid (pressures in cells, mass flows M = A m on the faces between them), momentum first, then mass with
-/// the new flows; friction implicit. Closed faces let nothing through. At the two ends the flow is what the caller has set
+/// the new flows; friction implicit, momentum carried from upwind. Closed faces let nothing through. At the two ends the flow is what the caller has set
 /// before (0: closed; a nozzle there takes the momentum of its air along). Everything else that enters or leaves is a side
 /// flow without axial momentum, applied to a cell's pressure between steps (AddMass, and Pass in air.h over the cell's
-/// volume). So the pipe itself keeps its mass to rounding. First order in dt; second order in dx where smooth.
+/// volume). So the pipe itself keeps its mass to rounding. First order in dt and, by the carried momentum, in dx.
 ///
 /// Left out: temperature (a fast expansion is colder than isothermal), bends and couplings one by one.
 /// Sources: Abdol-Hamid 1986; Specchia, Afshari, Shabana & Caldwell, Proc. IMechE F 227 (2013), the equations [S].

@@ -1,0 +1,238 @@
+#pragma once
+
+#include <string>
+
+#include "train_dynamics/brake/pneumatic/air.h"
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+enum class ControlValveKind {
+  kDirectRelease,     ///< AAR AB type: a rise of the pipe releases fully
+  kGraduatedRelease,  ///< UIC distributor: the cylinder follows the pipe up and down
+  kEcp,  ///< electronically controlled: the cylinder follows a goal sent to all at once; the pipe only feeds
+};
+
+/// Direct release, AB type. Thresholds after the generic car valve of the TPS manual [S]: 0.75, 0.25, 1.75 psi. Its
+/// passages to the cylinder are 1/8 in; here 2.4 mm [A], with which a rack of 150 cars vented at both ends fills all
+/// cylinders to 99 % in the published 16 s (3.2 mm: 11 s). The passages that take air from the pipe in an application are so
+/// small [A] that no row of them makes a fall that an emergency needs (with 3.2 and 1.0 mm the tail of 150 wagons does).
+struct DirectReleaseParams {
+  double apply_kpa = 5.2;                    ///< auxiliary reservoir above the pipe: auxiliary -> cylinder
+  double lap_kpa = 1.7;                      ///< ... no longer
+  double release_kpa = 12.0;                 ///< pipe above the auxiliary reservoir: cylinder -> atmosphere
+  double emergency_reservoir_l = 57.4;       ///< 3500 in3 [M]
+  double quick_service_volume_l = 0.6;       ///< takes air from the pipe at each first application [A]
+  double quick_service_kpa = 35.0;           ///< ... until it has this pressure [A]
+  double quick_service_opening_mm = 0.5;     ///< ... through this opening [A]
+  double minimum_cylinder_kpa = 70.0;        ///< of an application; the pipe's air fills up to it [M]
+  double limiting_opening_mm = 0.4;          ///< ... through this opening [A]
+  double emergency_opening_mm = 2.4;         ///< emergency reservoir -> cylinder [A, see above]
+  double vent_opening_mm = 6.35;             ///< pipe -> atmosphere in an emergency
+  double quick_action_time_s = 0.6;          ///< tau_q [A]
+  double quick_action_threshold_kpa = 20.0;  ///< d_em [A]
+  double vent_closes_below_kpa = 50.0;       ///< pressure of the pipe ...
+  double vent_time_s = 60.0;                 ///< ... and the time before which the vent does not close
+  bool accelerated_release =
+      false;  ///< after an emergency: cylinder and auxiliary -> pipe, once that has been charged
+              ///< to accelerated_release_kpa
+  double accelerated_release_kpa = 140.0;  ///< 20 psi [M]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("apply_kpa", apply_kpa, Range{0.5, 50.0, false, false});
+    v.Number("lap_kpa", lap_kpa, Range{0.0, 50.0, false, false});
+    v.Number("release_kpa", release_kpa, Range{0.5, 100.0, false, false});
+    v.Number("emergency_reservoir_l", emergency_reservoir_l, Range{1.0, 1000.0, false, false});
+    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false});
+    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false});
+    v.Number("quick_service_opening_mm", quick_service_opening_mm, Range{0.1, 10.0, false, false});
+    v.Number("minimum_cylinder_kpa", minimum_cylinder_kpa, Range{0.0, 200.0, false, false});
+    v.Number("limiting_opening_mm", limiting_opening_mm, Range{0.0, 5.0, false, false});
+    v.Number("emergency_opening_mm", emergency_opening_mm, Range{0.5, 25.0, false, false});
+    v.Number("vent_opening_mm", vent_opening_mm, Range{0.0, 30.0, false, false});
+    v.Number("quick_action_time_s", quick_action_time_s, Range{0.05, 10.0, false, false});
+    v.Number("quick_action_threshold_kpa", quick_action_threshold_kpa, Range{1.0, 200.0, false, false});
+    v.Number("vent_closes_below_kpa", vent_closes_below_kpa, Range{0.0, 300.0, false, false});
+    v.Number("vent_time_s", vent_time_s, kNonNegative);
+    v.Flag("accelerated_release", accelerated_release);
+    if (accelerated_release)
+      v.Number("accelerated_release_kpa", accelerated_release_kpa, Range{10.0, 500.0, false, false});
+    v.Check(lap_kpa < apply_kpa, "lap_kpa", "must be below apply_kpa", {"apply_kpa"});
+  }
+};
+
+/// Graduated release, UIC distributor. With the control reservoir's pressure p_R,
+///
+///   goal = min(k (p_R - p_pipe), p_max)           k = ratio, p_max = maximum_cylinder_kpa
+///   dp/dt = b (1.05 goal - p) up to the goal      b = ln(10.5) / fill_time_s: 95 % of any goal after fill_time_s
+///   dp/dt = -b_r (p - goal) down to it            b_r = ln(0.95 p_max / 40 kPa) / release_time_s
+///
+/// First step: below 10 % of p_max the cylinder fills at p_max / 10 per second at least. It applies once the pipe is
+/// insensitivity_kpa below p_R and releases once it is within release_kpa. While released, the pipe and p_R equalise with
+/// control_time_s: slow changes of the pipe (0.5 kPa/s: 10 kPa) do not apply the brake. [M: UIC 540, EN 15355; A]
+struct GraduatedReleaseParams {
+  double ratio = 3.8 / 1.5;
+  double maximum_cylinder_kpa = 380.0;
+  double fill_time_s = 4.0;      ///< P: 3 to 5 s; G: 18 to 30 s
+  double release_time_s = 17.5;  ///< from 95 % to 40 kPa; P: 15 to 20 s; G: 45 to 60 s
+  double insensitivity_kpa = 15.0;
+  double release_kpa = 5.0;
+  double control_time_s = 20.0;
+  double quick_service_volume_l = 0.6;  ///< accelerating chamber
+  double quick_service_kpa = 35.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("ratio", ratio, Range{0.5, 10.0, false, false});
+    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false});
+    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false});
+    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false});
+    v.Number("insensitivity_kpa", insensitivity_kpa, Range{1.0, 60.0, false, false});
+    v.Number("release_kpa", release_kpa, Range{0.5, 60.0, false, false});
+    v.Number("control_time_s", control_time_s, Range{1.0, 1000.0, false, false});
+    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false});
+    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false});
+    v.Check(release_kpa < insensitivity_kpa, "release_kpa", "must be below insensitivity_kpa",
+            {"insensitivity_kpa"});
+  }
+};
+
+/// ECP. The goal is a share of full service of maximum_cylinder_kpa, sent to all vehicles at once; the cylinder follows it
+/// as a distributor's does, with the times below. A pipe below emergency_pipe_kpa is an emergency, whatever is sent.
+struct EcpParams {
+  double maximum_cylinder_kpa = 430.0;
+  double delay_s = 0.2;              ///< from the driver's command to the valve [A]
+  double fill_time_s = 10.0;         ///< to 95 % of the goal [A]
+  double emergency_fill_time_s = 8;  ///< [A]
+  double release_time_s = 15.0;
+  double emergency_pipe_kpa = 345.0;  ///< 50 psi [M]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false});
+    v.Number("delay_s", delay_s, Range{0.0, 10.0, false, false});
+    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false});
+    v.Number("emergency_fill_time_s", emergency_fill_time_s, Range{0.5, 100.0, false, false});
+    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false});
+    v.Number("emergency_pipe_kpa", emergency_pipe_kpa, Range{0.0, 1000.0, false, false});
+  }
+};
+
+/// The control valve of a vehicle, with its reservoirs and its cylinder.
+struct ControlValveParams {
+  std::string name;
+  ControlValveKind kind = ControlValveKind::kDirectRelease;
+  double auxiliary_reservoir_l = 41.0;  ///< 2500 in3 [S]
+  double cylinder_l = 16.4;  ///< cylinder, clearance and piping at working travel, as fixed: 41.0 / 2.5 [A]
+  double charging_opening_mm = 3.2;  ///< pipe -> reservoirs, with check valve
+  double application_opening_mm =
+      2.4;                          ///< auxiliary reservoir -> cylinder; direct release only [A, see above]
+  double exhaust_opening_mm = 3.2;  ///< cylinder -> atmosphere; direct release only [A]
+  double cylinder_leakage_kpa_per_min = 0.0;
+  double ep_vent_opening_mm = 0.0;  ///< electro-pneumatic assistance: each vehicle vents its pipe; 0: none
+  DirectReleaseParams direct;
+  GraduatedReleaseParams graduated;
+  EcpParams ecp;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Choice("kind", kind,
+             {{"direct_release", ControlValveKind::kDirectRelease},
+              {"graduated_release", ControlValveKind::kGraduatedRelease},
+              {"ecp", ControlValveKind::kEcp}});
+    v.Number("auxiliary_reservoir_l", auxiliary_reservoir_l, Range{1.0, 1000.0, false, false});
+    v.Number("cylinder_l", cylinder_l, Range{0.5, 200.0, false, false});
+    v.Number("charging_opening_mm", charging_opening_mm, Range{0.5, 25.0, false, false});
+    v.Number("cylinder_leakage_kpa_per_min", cylinder_leakage_kpa_per_min, Range{0.0, 1000.0, false, false});
+    if (kind == ControlValveKind::kDirectRelease) {
+      v.Number("application_opening_mm", application_opening_mm, Range{0.5, 25.0, false, false});
+      v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{0.5, 25.0, false, false});
+      v.Group("direct", direct);
+    }
+    if (kind == ControlValveKind::kGraduatedRelease) v.Group("graduated", graduated);
+    if (kind == ControlValveKind::kEcp) v.Group("ecp", ecp);
+    if (kind != ControlValveKind::kEcp)
+      v.Number("ep_vent_opening_mm", ep_vent_opening_mm, Range{0.0, 10.0, false, false});
+  }
+};
+
+/// What a valve does.
+enum class ValveMode { kRelease, kApply, kLap, kEmergency };
+
+/// The air of one vehicle's brake beside the pipe; pressures absolute.
+struct ValveState {
+  double auxiliary_pa, emergency_pa, cylinder_pa;
+  double quick_service_pa;     ///< in the quick-service volume, or accelerating chamber
+  double quick_action_pa;      ///< p_q of the quick-action chamber, or p_R of the control reservoir
+  double quick_action_gap_pa;  ///< p_q less pipe at the last step
+  double vent_open_s;          ///< for which the emergency vent has been open
+  double mode;                 ///< a ValveMode
+
+  template <class Function>
+  void ForEachField(Function&& function) {
+    function(auxiliary_pa), function(emergency_pa), function(cylinder_pa), function(quick_service_pa);
+    function(quick_action_pa), function(quick_action_gap_pa), function(vent_open_s), function(mode);
+  }
+  ValveMode Mode() const { return static_cast<ValveMode>(static_cast<int>(mode)); }
+  void SetMode(ValveMode m) { mode = static_cast<double>(static_cast<int>(m)); }
+};
+
+/// Where a retaining valve stands.
+enum class Retainer { kDirect, kHighPressure, kLowPressure, kSlowDirect };
+
+/// What the train line tells every valve that listens.
+struct TrainLine {
+  double ecp_goal = 0.0;       ///< share of full service, 0 ... 1
+  bool ecp_emergency = false;  ///< the goal is an emergency's
+  double ep_pipe_pa = 1e9;     ///< what the pipe shall fall to, absolute; electro-pneumatic assistance only
+  bool ep_emergency = false;
+};
+
+/// A control valve ready to step: constants of its parameters, the temperature and the step.
+///
+/// Direct release, by mode, with hysteresis: see Step() in the source, a case per mode. An emergency is a rate:
+///
+///   dp_q/dt = (p_pipe - p_q) / tau_q;   fires when p_q - p_pipe > d_em: a steady fall below d_em / tau_q never does
+///
+/// The moment of firing is found inside the step (the gap taken as linear over it), and the vent is open for the rest.
+/// Left out: friction and travel of pistons, the cylinder's volume over its travel, temperature.
+class ControlValve {
+ public:
+  ControlValve(const ControlValveParams& params, double temperature_k, double dt_s);
+
+  /// Charged, or with no more air than the atmosphere.
+  ValveState Charged(double pipe_pa) const;
+  ValveState Empty() const;
+
+  /// One step over the pipe's pressure at the vehicle. @return p V let out to the atmosphere [J]
+  ///
+  /// @param pipe_pa  of the vehicle's cell, of volume pipe_m3; changed by what the valve takes or vents
+  double Step(const TrainLine& line, Retainer retainer, ValveState& s, double& pipe_pa, double pipe_m3) const;
+
+  /// p V of all air that the state holds [J].
+  double PressureVolume(const ValveState& s) const;
+
+  const ControlValveParams& params() const { return p_; }
+
+ private:
+  double StepDirect(Retainer retainer, ValveState& s, double& pipe_pa, double pipe_m3) const;
+  double StepGraduated(ValveState& s, double& pipe_pa, double pipe_m3) const;
+  double StepEcp(const TrainLine& line, ValveState& s, double& pipe_pa, double pipe_m3) const;
+  /// Moves the cylinder towards a goal (gauge); air from the auxiliary reservoir. @return p V let out
+  double Follow(double goal_pa, double fill_per_s, double release_per_s, double least_fill_pa_per_s,
+                ValveState& s) const;
+
+  ControlValveParams p_;
+  double dt_s_;
+  double auxiliary_m3_, emergency_m3_, cylinder_m3_, quick_service_m3_;
+  // conductance times R T [m3/s]
+  double charging_, application_, exhaust_, slow_direct_, emergency_, vent_, limiting_, ep_vent_,
+      quick_service_;
+  double chamber_share_;  ///< of the gap that the chamber closes in a step: 1 - exp(-dt / tau)
+  double leak_pa_;        ///< of the cylinder in a step
+  double fill_per_s_, emergency_fill_per_s_, release_per_s_;
+};
+
+}  // namespace train_dynamics

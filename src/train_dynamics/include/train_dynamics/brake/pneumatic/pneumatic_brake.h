@@ -1,0 +1,312 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/brake/pneumatic/control_valve.h"
+#include "train_dynamics/brake/pneumatic/pipe_flow.h"
+#include "train_dynamics/judgement.h"
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+/// The brake pipe of a train.
+struct TrainPipeParams {
+  double inner_diameter_mm = 31.75;  ///< 1.25 in, AAR [S]; 32 mm UIC
+  double length_ratio = 1.10;        ///< length of the pipe over that of the vehicle [S]
+  double branch_volume_l = 0.9;      ///< of each vehicle [A]
+  double temperature_k = 293.15;
+  double leakage_g_per_s_km =
+      0.0;  ///< from the charged pipe, per km of it; proportional to the gauge pressure
+  int cells_per_vehicle = 2;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("inner_diameter_mm", inner_diameter_mm, Range{20.0, 50.0, false, false});
+    v.Number("length_ratio", length_ratio, Range{1.0, 1.3, false, false});
+    v.Number("branch_volume_l", branch_volume_l, Range{0.0, 20.0, false, false});
+    v.Number("temperature_k", temperature_k, Range{223.0, 323.0, false, false});
+    v.Number("leakage_g_per_s_km", leakage_g_per_s_km, Range{0.0, 1000.0, false, false});
+    v.Integer("cells_per_vehicle", cells_per_vehicle, Range{1, 1000, false, false});
+  }
+};
+
+/// The driver's valve, and that of every remote locomotive.
+struct DriversValveParams {
+  double service_rate_kpa_per_s = 20.0;       ///< at which the equalising reservoir falls
+  double full_service_reduction_kpa = 170.0;  ///< what ECP and electro-pneumatic goals are shares of
+  double main_reservoir_kpa = 900.0;          ///< constant: the compressors keep up [A]
+  double charging_opening_mm = 19.0;          ///< [A]
+  double exhaust_opening_mm = 25.0;           ///< service; [A]
+  double emergency_opening_mm = 25.0;         ///< [A]
+  double blocking_time_s = 60.0;              ///< for which nothing ends an emergency [A]
+  bool pressure_maintaining = true;           ///< an applied brake's pipe is fed against leakage
+  double overcharge_kpa = 0.0;                ///< of the pipe at a release
+  double overcharge_time_s = 10.0;
+  double overcharge_decay_kpa_per_s = 0.3;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("service_rate_kpa_per_s", service_rate_kpa_per_s, Range{10.0, 40.0, false, false});
+    v.Number("full_service_reduction_kpa", full_service_reduction_kpa, Range{50.0, 400.0, false, false});
+    v.Number("main_reservoir_kpa", main_reservoir_kpa, Range{300.0, 1200.0, false, false});
+    v.Number("charging_opening_mm", charging_opening_mm, Range{1.0, 40.0, false, false});
+    v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{1.0, 40.0, false, false});
+    v.Number("emergency_opening_mm", emergency_opening_mm, Range{15.0, 32.0, false, false});
+    v.Number("blocking_time_s", blocking_time_s, kNonNegative);
+    v.Flag("pressure_maintaining", pressure_maintaining);
+    v.Number("overcharge_kpa", overcharge_kpa, Range{0.0, 100.0, false, false});
+    v.Number("overcharge_time_s", overcharge_time_s, kNonNegative);
+    v.Number("overcharge_decay_kpa_per_s", overcharge_decay_kpa_per_s, Range{0.01, 10.0, false, false});
+  }
+};
+
+enum class PipeSourceKind { kDriver, kRemote, kEndOfTrain };
+
+/// A place where the pipe is charged and vented.
+struct PipeSourceParams {
+  std::string name;
+  int vehicle = 1;  ///< 1 = the first; -1 = the last
+  PipeSourceKind kind = PipeSourceKind::kDriver;
+  double radio_delay_s = 0.0;
+  bool two_way = true;             ///< an end-of-train device that vents in an emergency; else it only tells
+  double opening_mm = 19.0;        ///< of an end-of-train device [A]
+  double radio_lost_from_s = 1e9;  ///< commands given from here ...
+  double radio_lost_to_s =
+      1e9;  ///< ... to here do not arrive; a remote locomotive's valve laps 45 s later [A]
+  std::vector<BrakeCommand>
+      commands;  ///< of this locomotive alone, in place of the driver's: independent control
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Text("name", name);
+    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false});
+    v.Choice("kind", kind,
+             {{"driver", PipeSourceKind::kDriver},
+              {"remote", PipeSourceKind::kRemote},
+              {"end_of_train", PipeSourceKind::kEndOfTrain}});
+    if (kind != PipeSourceKind::kDriver) {
+      v.Number("radio_delay_s", radio_delay_s, Range{0.0, 600.0, false, false});
+      v.Number("radio_lost_from_s", radio_lost_from_s, kNonNegative);
+      v.Number("radio_lost_to_s", radio_lost_to_s, kNonNegative);
+    }
+    if (kind == PipeSourceKind::kEndOfTrain) {
+      v.Flag("two_way", two_way);
+      v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false});
+    }
+    if (kind == PipeSourceKind::kRemote) v.List("commands", commands);
+    v.Check(vehicle != 0, "vehicle", "must count from 1, or from -1 for the last");
+  }
+};
+
+enum class EmptyLoad { kNone, kTwoStep, kProportional };
+
+/// What some vehicles have that others have not.
+struct BrakeEquipmentParams {
+  int from = kRequiredInteger;  ///< vehicle, from 1; or from -1 for the last
+  int to = kRequiredInteger;
+  std::string valve;  ///< name of one of `valves`; empty: the first
+  bool cut_out = false;
+  Retainer retainer = Retainer::kDirect;
+  EmptyLoad empty_load = EmptyLoad::kNone;
+  double load_share = 1.0;   ///< of the full load
+  double empty_ratio = 0.5;  ///< of the cylinder's pressure, empty over loaded
+  /// Below this share of the load a two-step device is set to empty.
+  double change_over_share = 0.4;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Integer("from", from, Range{-100000, 100000, false, false});
+    v.Integer("to", to, Range{-100000, 100000, false, false});
+    v.Text("valve", valve);
+    v.Flag("cut_out", cut_out);
+    v.Choice("retainer", retainer,
+             {{"direct", Retainer::kDirect},
+              {"high_pressure", Retainer::kHighPressure},
+              {"low_pressure", Retainer::kLowPressure},
+              {"slow_direct", Retainer::kSlowDirect}});
+    v.Choice("empty_load", empty_load,
+             {{"none", EmptyLoad::kNone},
+              {"two_step", EmptyLoad::kTwoStep},
+              {"proportional", EmptyLoad::kProportional}});
+    v.Number("load_share", load_share, kFraction);
+    v.Number("empty_ratio", empty_ratio, Range{0.1, 1.0, false, false});
+    v.Number("change_over_share", change_over_share, kFraction);
+  }
+  /// Of the cylinder's pressure, what acts on the shoes.
+  double PressureShare() const;
+};
+
+/// A hose that parts.
+struct PartedHoseParams {
+  int behind_vehicle = kRequiredInteger;
+  double time_s = kRequired;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Integer("behind_vehicle", behind_vehicle, Range{1, 100000, false, false});
+    v.Number("time_s", time_s, kNonNegative);
+  }
+};
+
+/// The air brake of a train as a machine. Pressures are gauge.
+struct PneumaticBrakeParams {
+  double charged_pressure_kpa = 600.0;
+  std::optional<double> initial_pressure_kpa;  ///< of pipe and reservoirs; else charged
+  TrainPipeParams pipe;
+  DriversValveParams drivers_valve;
+  std::vector<PipeSourceParams> sources{PipeSourceParams{}};
+  std::vector<ControlValveParams> valves{ControlValveParams{}};
+  std::vector<BrakeEquipmentParams> equipment;
+  std::vector<int> closed_angle_cocks;  ///< behind these vehicles
+  std::vector<PartedHoseParams> parted_hoses;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("charged_pressure_kpa", charged_pressure_kpa, Range{300.0, 1000.0, false, false});
+    v.Number("initial_pressure_kpa", initial_pressure_kpa, Range{0.0, 1000.0, false, false});
+    v.Group("pipe", pipe);
+    v.Group("drivers_valve", drivers_valve);
+    v.List("sources", sources);
+    v.List("valves", valves);
+    v.List("equipment", equipment);
+    v.Integers("closed_angle_cocks", closed_angle_cocks, Range{1, 100000, false, false});
+    v.List("parted_hoses", parted_hoses);
+    v.Check(drivers_valve.main_reservoir_kpa >= charged_pressure_kpa + drivers_valve.overcharge_kpa,
+            "drivers_valve.main_reservoir_kpa", "must be at least charged_pressure_kpa and the overcharge",
+            {"charged_pressure_kpa"});
+    v.Check(!sources.empty() && sources.front().kind == PipeSourceKind::kDriver, "sources",
+            "must begin with a source of kind driver");
+    v.Check(!valves.empty(), "valves", "must list at least one valve");
+  }
+
+  /// What breaks in a train of so many vehicles.
+  std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  /// Of each vehicle: the index of its valve.
+  std::vector<int> ValveOfVehicle(int vehicles) const;
+};
+
+/// Commands to a source that are on their way: a source obeys each once its radio has brought it.
+struct CommandsUnderWay {
+  static constexpr int kMost = 8;
+  struct Entry {
+    double arrives_s, kind, reduction_pa;
+  };
+  std::array<Entry, kMost> entries{};
+  double count = 0.0;
+
+  template <class Function>
+  void ForEachField(Function&& function) {
+    for (Entry& entry : entries)
+      function(entry.arrives_s), function(entry.kind), function(entry.reduction_pa);
+    function(count);
+  }
+};
+
+/// What a driver's valve, or the train line, has been told.
+struct SourceState {
+  CommandsUnderWay under_way;
+  double goal_pa;        ///< of the equalising reservoir, gauge
+  double equalising_pa;  ///< gauge
+  double emergency;      ///< 1 or 0
+  double emergency_from_s;
+  double overcharged_to_s;
+  double flow_kgps;   ///< into the pipe; negative: out of it
+  double own_obeyed;  ///< how many of its own commands have been sent
+
+  template <class Function>
+  void ForEachField(Function&& function) {
+    under_way.ForEachField(function);
+    function(goal_pa), function(equalising_pa), function(emergency), function(emergency_from_s);
+    function(overcharged_to_s), function(flow_kgps), function(own_obeyed);
+  }
+};
+
+/// The brake pipe of a train with its valves, stepped on a fixed grid of times t_k = k dt, dt <= 5 ms and at most half of
+/// what a wave needs for a cell, whatever is asked for. In a step: commands that have arrived, the air in the pipe,
+/// leakage, sources, valves in vehicle order. Cylinder pressures between two grid times are linear.
+///
+/// Left out: temperature; the locomotives' compressors; hand brakes; piston travel over wear.
+class PneumaticBrake {
+ public:
+  /// @param vehicle_length_m  of each vehicle, front to rear, > 0
+  /// @throws std::invalid_argument naming what does not suit the train
+  PneumaticBrake(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m);
+
+  int vehicles() const { return static_cast<int>(states_.size()); }
+  double step_s() const { return dt_s_; }
+
+  /// The driver does this; times of commands ascend.
+  void Command(const BrakeCommand& command);
+  /// The hose parts between vehicles `connection` and `connection` + 1, from 0. Again: nothing.
+  void OpenPipe(double time_s, int connection);
+  /// Least pressure of a vehicle's cylinder, whatever the pipe does: a locomotive's independent brake, gauge.
+  void SetIndependent(int vehicle, double pressure_pa) { independent_pa_[vehicle] = pressure_pa; }
+
+  /// Pressure that acts in each vehicle's cylinder [Pa, gauge]; resizes. Times must ascend.
+  void PressuresAt(double time_s, std::vector<double>& pressure_pa);
+
+  template <class Function>
+  void ForEachField(Function&& function) {
+    for (double& p : flow_.pressure_pa) function(p);
+    for (double& m : flow_.mass_flow_kgps) function(m);
+    for (ValveState& s : states_) s.ForEachField(function);
+    for (SourceState& s : sources_) s.ForEachField(function);
+    line_.ForEachField(function);
+    for (double& p : acting_pa_) function(p);
+    for (double& p : acting_before_pa_) function(p);
+    for (double& p : independent_pa_) function(p);
+    function(steps_), function(supplied_pv_), function(released_pv_);
+  }
+
+  // What is recorded, at the last grid time; pressures gauge [Pa].
+  double time_s() const { return steps_ * dt_s_; }
+  double PipePressure(int vehicle) const { return flow_.pressure_pa[valve_cell_[vehicle]] - kAtmospherePa; }
+  const ValveState& valve(int vehicle) const { return states_[vehicle]; }
+  ValveState& valve(int vehicle) { return states_[vehicle]; }
+  const SourceState& source(int i) const { return sources_[i]; }
+  double HeadPressure() const { return flow_.pressure_pa.front() - kAtmospherePa; }
+  double TailPressure() const { return flow_.pressure_pa.back() - kAtmospherePa; }
+  double PipeLength() const;
+  double FlowIntoPipe() const;  ///< of all sources [kg/s]
+
+  /// Air in pipe, reservoirs and cylinders [kg]; what sources have supplied; what has left for the atmosphere.
+  double AirMass() const;
+  double SuppliedMass() const { return supplied_pv_ / grid_.rt; }
+  double ReleasedMass() const { return released_pv_ / grid_.rt; }
+
+ private:
+  void Step();
+  void StepSource(int i);
+  void Receive(SourceState& source, double now_s) const;
+  void Send(SourceState& source, double now_s, double delay_s, const BrakeCommand& command) const;
+  void Equalise(SourceState& source, double now_s) const;
+
+  PneumaticBrakeParams params_;
+  PipeGrid grid_;
+  double dt_s_;
+  std::vector<ControlValve> valves_;
+  std::vector<int> valve_of_, valve_cell_, source_cell_;
+  std::vector<char> cut_out_;
+  std::vector<Retainer> retainer_;
+  std::vector<double> pressure_share_;
+  std::vector<double> leak_share_;  ///< [cell] of the gauge pressure, per step
+  double charging_, exhaust_, emergency_, bore_;
+  double line_delay_s_ = 0.0;
+  bool all_ecp_ = true, has_line_ = false;
+
+  PipeFlow flow_;
+  std::vector<ValveState> states_;
+  std::vector<SourceState> sources_;
+  SourceState line_{};
+  std::vector<double> acting_pa_, acting_before_pa_, independent_pa_;
+  std::vector<int> parted_;  ///< faces
+  double steps_ = 0.0, supplied_pv_ = 0.0, released_pv_ = 0.0;
+};
+
+}  // namespace train_dynamics
