@@ -190,15 +190,7 @@ void CsvRecorder::OpenWagon(int vehicle) {
   wagons_.emplace(vehicle, std::move(wagon));
 }
 
-void CsvRecorder::Close(const train_dynamics::TrainMaster& master) {
-  std::string couplers =
-      "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n";
-  int number = 1;
-  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
-    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
-                            extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
-  }
-  WriteFile(folder_ / "couplers.csv", couplers);
+void CsvRecorder::Close() {
   WriteFile(folder_ / "vehicles.csv", VehicleTable(last_));
   for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
   for (auto& [vehicle, stream] : wagons_) stream.flush();
@@ -209,6 +201,17 @@ void CsvRecorder::CheckAll() const {
   Check(history_, folder_ / kHistory);
   Check(pressures_, folder_ / kPressures);
   for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
+}
+
+void WriteCouplerTable(const std::filesystem::path& folder, const train_dynamics::TrainMaster& master) {
+  std::string couplers =
+      "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n";
+  int number = 1;
+  for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
+    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
+                            extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
+  }
+  WriteFile(folder / "couplers.csv", couplers);
 }
 
 }  // namespace train_results

@@ -163,7 +163,7 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   if (csv_ != nullptr) csv_->GoOn();
   if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
-  for (const char* old : {"summary.json", "report.html"}) fs::remove(folder_ / old);
+  for (const char* old : {"summary.json", "couplers.csv", "report.html"}) fs::remove(folder_ / old);
   StartThread();
 }
 
@@ -228,7 +228,8 @@ void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::str
   if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
   if (bag_ != nullptr) attempt([&] { bag_->Close(); });
   attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
-  if (csv_ != nullptr) attempt([&] { csv_->Close(master); });
+  attempt([&] { WriteCouplerTable(folder_, master); });
+  if (csv_ != nullptr) attempt([&] { csv_->Close(); });
   if (error != nullptr) std::rethrow_exception(error);
 }
 

@@ -12,7 +12,7 @@ import matplotlib
 import numpy
 
 from train_brake_report import cards, contents, page, paper, style
-from train_brake_report.bag import BagError
+from train_brake.bag import BagError
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs, scenario_of
 

@@ -1,59 +1,18 @@
 """A run of the train: its bag, and the config.yaml and summary.json of the same run where there are any."""
 
-import csv
 import functools
 import json
 import pathlib
-from typing import Callable, Dict, List, Optional
+from typing import List, Optional
 
 import numpy
-import yaml
+from train_brake.bag import BagError
+from train_brake.run import bag_of, load_yaml, parsed, read_couplers, text_of
 
-from train_brake_report.bag import BagError, Recording, read_bag, read_scenario
+from train_brake_report.bag import Recording, read_bag, read_scenario
 
 KMH_PER_MPS = 3.6
 MODEL_NAMES = {"2d": "2D train", "ltd": "LTD", "ltd-no-inertia": "LTD without rotational inertia"}
-
-
-def _bag_of(given: pathlib.Path) -> pathlib.Path:
-    if not given.is_dir():
-        return given
-    for name in ("train.bag", "train.bag.active"):
-        if (given / name).exists():
-            return given / name
-    below = sorted(folder.name for folder in given.iterdir() if (folder / "train.bag").exists())
-    hint = f"; give one or more of its folders {', '.join(below)}" if below else ""
-    raise BagError(f"{given} holds no train.bag{hint}")
-
-
-def _parsed(text: str, source: pathlib.Path, parse: Callable) -> dict:
-    """The keys in a text of JSON or YAML; none in an empty one."""
-    try:
-        content = parse(text) if text else {}
-    except (ValueError, yaml.YAMLError) as error:
-        raise BagError(f"{source} is damaged: {' '.join(str(error).split())}") from None
-    if not isinstance(content, dict):
-        raise BagError(f"{source} is damaged: it is no list of keys")
-    return content
-
-
-def _text(file: pathlib.Path) -> str:
-    return file.read_text() if file.exists() else ""
-
-
-def _load_yaml(text: str) -> dict:
-    return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-
-
-def read_couplers(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
-    """The columns of a run's couplers.csv: largest forces of all exchanges, and when, for each connection."""
-    with open(file, newline="") as text:
-        rows = list(csv.DictReader(text))
-    try:
-        return {name: numpy.array([float(row[name]) for row in rows])
-                for name in ("max_tension_n", "max_tension_time_s", "max_compression_n", "max_compression_time_s")}
-    except (KeyError, TypeError, ValueError) as error:
-        raise BagError(f"{file} is damaged: {type(error).__name__}: {error}") from None
 
 
 class Run:
@@ -61,7 +20,7 @@ class Run:
 
     def __init__(self, given: pathlib.Path, wagon: Optional[int]):
         self.given = given
-        self.bag = _bag_of(given)
+        self.bag = bag_of(given)
         self.recording: Recording = read_bag(self.bag, wagon)
         self.notes: List[str] = []
         self.label = ""  # set by label_runs
@@ -72,7 +31,7 @@ class Run:
     def _find_companions(self) -> None:
         """summary.json and config.yaml belong to the train.bag beside them; to another bag if the digests agree."""
         folder = self.bag.parent
-        summary = _parsed(_text(folder / "summary.json"), folder / "summary.json", json.loads) or None
+        summary = parsed(text_of(folder / "summary.json"), folder / "summary.json", json.loads) or None
         proved = summary is not None and self.digest is not None and summary.get("state_digest") == self.digest
         belong = proved or self.bag.name.startswith("train.bag")
         if belong and summary is not None and self.digest is not None and not proved:
@@ -81,8 +40,8 @@ class Run:
         self.summary = summary if belong else None
         self.config_file = folder / "config.yaml" if belong and (folder / "config.yaml").exists() else None
         self.couplers_file = folder / "couplers.csv" if belong and (folder / "couplers.csv").exists() else None
-        self.config_text = self.recording.scenario or (_text(self.config_file) if self.config_file else "")
-        self.config = _parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, _load_yaml) or None
+        self.config_text = self.recording.scenario or (text_of(self.config_file) if self.config_file else "")
+        self.config = parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, load_yaml) or None
 
     def _judge_records(self) -> None:
         table = self.records
@@ -196,9 +155,9 @@ class Run:
 
 def scenario_of(given: pathlib.Path) -> str:
     """The scenario's name; empty if unknown."""
-    bag = _bag_of(given)
+    bag = bag_of(given)
     beside = bag.parent / "config.yaml"
-    return _parsed(read_scenario(bag) or _text(beside), beside, _load_yaml).get("name", "")
+    return parsed(read_scenario(bag) or text_of(beside), beside, load_yaml).get("name", "")
 
 
 def label_runs(runs: List[Run]) -> None:

@@ -5,7 +5,7 @@ from typing import List
 
 import numpy
 
-from train_brake_report.bag import Table
+from train_brake.bag import Table
 
 SLIDING = 0.10  # creepage; at 80 km/h adhesion is largest at 3 % on dry and 7 % on wet rail
 LOCKED = 0.99

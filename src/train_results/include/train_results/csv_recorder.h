@@ -15,7 +15,6 @@ namespace train_results {
 ///   train_history.csv  mean, lead and tail speed, largest forces, mean pressure
 ///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
 ///   wagon_NNN.csv      one per detailed vehicle
-///   couplers.csv       largest forces of every connection and when (at the end)
 ///   vehicles.csv       the last record of every vehicle (at the end)
 class CsvRecorder {
  public:
@@ -32,7 +31,7 @@ class CsvRecorder {
   void Record(const train_dynamics::TrainRecord& record);
 
   /// Writes the tables of the end. @throws std::runtime_error if anything could not be written
-  void Close(const train_dynamics::TrainMaster& master);
+  void Close();
 
  private:
   void OpenWagon(int vehicle);
@@ -45,5 +44,10 @@ class CsvRecorder {
   std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
   train_dynamics::RecordArrays last_;                            ///< the last record of the vehicles
 };
+
+/// Writes couplers.csv into a folder: the largest tension and compression [N] of every connection, each with its time
+/// [s], of all exchanges up to now. Replaces the file, at once or not at all.
+/// @throws std::runtime_error if it could not be written
+void WriteCouplerTable(const std::filesystem::path& folder, const train_dynamics::TrainMaster& master);
 
 }  // namespace train_results

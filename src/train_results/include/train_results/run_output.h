@@ -41,6 +41,7 @@ struct OutputOptions {
 ///   train.bag     the records as they come (and tables, if wanted)
 ///   branched_from where a branch left another run (a checkpoint, for verify)
 ///   checkpoint    now and then, and at the end: where the run can be resumed
+///   couplers.csv  at the end: the largest forces of every connection, of all exchanges
 ///   summary.json  at the end; its absence tells that the run was cut off
 class RunOutput {
  public:

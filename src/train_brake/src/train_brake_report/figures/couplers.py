@@ -48,8 +48,10 @@ def draw_largest(group: Group) -> Figure:
 
     of_records = [run.label for run in runs if run.couplers_file is None]
     caption = ("Largest tension and compression of each connection during the run; connection c joins vehicles c and "
-               "c + 1. Of all exchanges (couplers.csv)"
-               + ("." if not of_records else f"; of {' and '.join(of_records)} of the records of the bag only."))
+               "c + 1. "
+               + ("Of all exchanges (couplers.csv)." if not of_records else "Of the records of the bag."
+                  if len(of_records) == len(runs) else "Of all exchanges (couplers.csv); of "
+                  f"{' and '.join(of_records)} of the records of the bag only."))
     for panel, run in zip(below, others):
         difference = largest[run] - largest[first]
         connections = numpy.arange(1, difference.shape[1] + 1)
