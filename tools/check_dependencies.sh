@@ -27,7 +27,7 @@ rooms() {
     [ ! -d "train_dynamics/src/$room" ] || echo "train_dynamics/src/$room"
   done
 }
-elements="contact suspension coupler brake traction resistance track"
+elements="contact suspension coupler brake traction resistance track slide_protection"
 
 forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_dynamics|train_results|train_run|train_sim|ltd_master|wagon_node)/' \
   'strict_config knows neither trains nor ROS' strict_config
@@ -37,9 +37,9 @@ forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_results|train_run|train_sim|
 {
   forbid 'yaml-cpp/|train_dynamics/config/|strict_config/(reader|writer|part_library|overrides|yaml_tree|scalar|suggestion|text_file)' \
     'only config/ reads YAML; physics gets plain structs' $(rooms numeric $elements vehicle train)
-  forbid 'train_dynamics/(spring|contact|suspension|coupler|brake|traction|resistance|track|vehicle|train)/' \
+  forbid 'train_dynamics/(spring|contact|suspension|coupler|brake|traction|resistance|track|slide_protection|vehicle|train)/' \
     'numeric/ stands below all physics' $(rooms numeric)
-  forbid 'train_dynamics/(contact|suspension|coupler|brake|traction|resistance|track|vehicle|train)/' \
+  forbid 'train_dynamics/(contact|suspension|coupler|brake|traction|resistance|track|slide_protection|vehicle|train)/' \
     'spring/ holds what several elements are made of' $(rooms spring)
   forbid 'train_dynamics/(vehicle|train)/' \
     'elements stand below vehicle/ and train/' $(rooms $elements)

@@ -102,6 +102,12 @@ INSTANTIATE_TEST_SUITE_P(
     All, CheckpointTest,
     testing::Values(
         Case{"Wagons", "emergency", {"model=2d", "duration_s=6"}},
+        Case{"SlideProtection",
+             "single_wagon_stop",
+             {"train.consist[0].vehicle=ore_wagon_empty", "train.consist[0].vehicle.wheel_rail.adhesion=low",
+              "train.consist[0].vehicle.wheel_slide_protection=threshold_3state", "train.consist[0].count=5",
+              "duration_s=16"},
+             0.6375},
         Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
         Case{"NewmarkWithoutInertia",
              "full_service",

@@ -300,6 +300,36 @@ TEST_F(ScenarioRules, UnitsOfNoVehicles) {
   EXPECT_THROW(Validate(train), std::invalid_argument);
 }
 
+TEST_F(ScenarioRules, AControllerSamplesEveryWholeNumberOfSteps) {
+  const Settings with = {"train.consist[0].vehicle.wheel_slide_protection=threshold_3state",
+                         "train.consist[0].vehicle.wheel_slide_protection.sampling_period_s=0.0205",
+                         "train.consist[0].vehicle.wheel_slide_protection.valve.delay_s=0.0301"};
+  const std::string errors = ErrorsOf(Scenario("single_wagon_stop"), with);
+  EXPECT_NE(errors.find("sampling_period_s must be a multiple of dt_s (0.001, default), got 0.0205"),
+            std::string::npos)
+      << errors;
+  EXPECT_NE(errors.find("valve.delay_s must be a multiple of dt_s (0.001, default), got 0.0301"),
+            std::string::npos)
+      << errors;
+}
+
+TEST_F(ScenarioRules, AControllerMustBeOneThatExists) {
+  const std::string errors =
+      ErrorsOf(Scenario("single_wagon_stop"),
+               {"train.consist[0].vehicle.wheel_slide_protection=creep_control",
+                "train.consist[0].vehicle.wheel_slide_protection.controller=threshold"});
+  EXPECT_NE(errors.find("controller must be one of threshold_3state, creep_control, got 'threshold'"),
+            std::string::npos)
+      << errors;
+}
+
+TEST_F(ScenarioRules, TheLtdModelLeavesOutWheelSlideProtection) {
+  EXPECT_NE(WarningsOf("single_wagon_stop",
+                       {"model=ltd", "train.consist[0].vehicle.wheel_slide_protection=threshold_3state"})
+                .find("the ltd model leaves out train.consist[0].vehicle.wheel_slide_protection"),
+            std::string::npos);
+}
+
 TEST_F(ScenarioRules, AreJudgedBesideErrorsInKeysThatTheyDoNotRead) {
   const std::string file = Put("scenarios/a.yaml", "base: dip\ninitial_speed_kmh: fast\ndt_s: 0.0007\n");
   EXPECT_EQ(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -71,6 +72,10 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double t
     throw std::invalid_argument("detail_vehicles must stay as they are when a run is resumed");
   }
   keep("initial_speed_kmh", p.initial_speed_kmh, q.initial_speed_kmh);
+  for (std::size_t i = 0; i < std::min(p.train.consist.size(), q.train.consist.size()); ++i) {
+    keep(fmt::format("the initial speed of train.consist[{}] in m/s", i).c_str(), p.InitialSpeedOfGroup(i),
+         q.InitialSpeedOfGroup(i));
+  }
   keep("start_position_m", p.start_position_m, q.start_position_m);
   if (p.initial_slack != q.initial_slack) {
     throw std::invalid_argument("initial_slack must stay as it is when a run is resumed");

@@ -90,7 +90,7 @@ void PrintScenario(const LoadedScenario& scenario) {
     Line("pressures", "{}", p.pressure_table);
   }
   Line("run", "{:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} s",
-       p.duration_s, p.initial_speed_kmh, steps, p.dt_s, p.exchange_interval_s, p.record_interval_s);
+       p.duration_s, 3.6 * p.MeanInitialSpeed(), steps, p.dt_s, p.exchange_interval_s, p.record_interval_s);
 }
 
 void PrintStability(const LoadedScenario& scenario) {

@@ -65,7 +65,7 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
   for (int i = 0; i < vehicles(); ++i) masses_kg_.push_back(consist_.vehicle(i).TotalMass());
   if (vertical_exaggeration_ <= 0.0) {
     // What comes into view of a train that does not gain speed.
-    const double way = scenario.InitialSpeed() * scenario.duration_s;
+    const double way = scenario.MeanInitialSpeed() * scenario.duration_s;
     const double front = scenario.start_position_m;
     vertical_exaggeration_ = FittingExaggeration(
         elevation_, front + std::min(0.0, way) - window_m_, front + std::max(0.0, way), window_m_,

@@ -99,7 +99,7 @@ void RunSummary::ForEachMemory(Self& self, Function& function) {
   }
 }
 
-double RunSummary::Forward() const { return scenario_.initial_speed_kmh < 0.0 ? -1.0 : 1.0; }
+double RunSummary::Forward() const { return scenario_.MeanInitialSpeed() < 0.0 ? -1.0 : 1.0; }
 
 double RunSummary::BehindFurthest() const { return furthest_m_ - Forward() * mean_distance_m_; }
 

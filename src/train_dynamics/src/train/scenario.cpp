@@ -68,11 +68,16 @@ Stretch ReachOf(const ScenarioParams& scenario) {
   double rear_m = front_m;
   for (const ConsistGroupParams& group : scenario.train.consist)
     rear_m -= group.count * group.vehicle.length_m;
-  const double time_s = scenario.duration_s, speed_mps = scenario.InitialSpeed();
+  const double time_s = scenario.duration_s;
+  double fastest_mps = 0.0, slowest_mps = 0.0;
+  for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    fastest_mps = std::max(fastest_mps, scenario.InitialSpeedOfGroup(i));
+    slowest_mps = std::min(slowest_mps, scenario.InitialSpeedOfGroup(i));
+  }
   const auto way = [&](double start_mps, double slope) {
     return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
   };
-  return {rear_m - way(-speed_mps, steepest_rise), front_m + way(speed_mps, steepest_fall)};
+  return {rear_m - way(-slowest_mps, steepest_rise), front_m + way(fastest_mps, steepest_fall)};
 }
 
 /// Warns once of the entries of a list of the track that no wheel reaches.
@@ -101,6 +106,16 @@ int ScenarioParams::ExchangesPerRecord() const {
 }
 int ScenarioParams::RecordsPerLedger() const {
   return static_cast<int>(Parts(ledger_interval_s, record_interval_s));
+}
+
+double ScenarioParams::MeanInitialSpeed() const {
+  double mass = 0.0, momentum = 0.0;
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const double of_group = train.consist[i].count * train.consist[i].vehicle.TotalMass();
+    mass += of_group;
+    momentum += of_group * InitialSpeedOfGroup(i);
+  }
+  return momentum / mass;
 }
 
 bool ScenarioParams::Uses(VehicleModel wanted) const {
@@ -162,6 +177,7 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
     }
   }
   JudgeDips(broken);
+  JudgeSlideProtection(broken);
   return broken;
 }
 
@@ -215,6 +231,20 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   }
 }
 
+void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const {
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const std::optional<SlideProtectionParams>& protection = train.consist[i].vehicle.wheel_slide_protection;
+    if (!protection || ModelOfGroup(i) != VehicleModel::kTwoD) continue;
+    const std::string part = "train.consist" + Index(i) + ".vehicle.wheel_slide_protection.";
+    const auto must_be_multiple = [&](const std::string& key, double value) {
+      if (value == 0.0 || Multiple(value, dt_s)) return;
+      broken.push_back({part + key, "must be a multiple of dt_s", {"train", "dt_s", "model"}});
+    };
+    must_be_multiple("sampling_period_s", protection->sampling_period_s);
+    must_be_multiple("valve.delay_s", protection->valve.delay_s);
+  }
+}
+
 std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   std::vector<Warning> warnings;
   const TrainParams& train = scenario.train;
@@ -241,6 +271,13 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
              " times mass_kg wheel_radius_m^2, more than if all mass were at the tread (a real "
              "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and "
              "turn again sooner than real ones; if that is meant, say accept_large_inertia: true"});
+  }
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const VehicleModel model = scenario.ModelOfGroup(i);
+    if (model == VehicleModel::kTwoD || !train.consist[i].vehicle.wheel_slide_protection) continue;
+    const std::string key = "train.consist" + Index(i) + ".vehicle.wheel_slide_protection";
+    warnings.push_back({key, std::string("the ") + ModelName(model) + " model leaves out " + key +
+                                 ": its wheels neither slide nor lock"});
   }
   for (const VehicleModel model : {VehicleModel::kLtd, VehicleModel::kLtdNoInertia}) {
     if (!scenario.Uses(model)) continue;

@@ -5,7 +5,9 @@
 #include <cstring>
 #include <variant>
 
+#include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/snapshot.h"
+#include "train_dynamics/vehicle/batch_protection.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
 
 namespace train_dynamics {
@@ -88,27 +90,105 @@ std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
 
 // ---- what they have in common ---------------------------------------------------------------------------------
 
-/// Equal vehicles, one behind the other. A model over lanes is one more alternative here.
-using Batch = std::variant<VehicleBatch<Wagon>, VehicleBatch<SixAxleVehicle>, VehicleBatch<LtdVehicle>>;
+/// Equal vehicles, one behind the other.
+template <class Vehicle>
+class EqualVehicles : public VehicleBatch<Vehicle> {
+ public:
+  using VehicleBatch<Vehicle>::VehicleBatch;
+
+  /// As VehicleBatch::Advance, in the exchange that is asked for.
+  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads,
+               const ReplyPlaces& reply) {
+    return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, request.record);
+  }
+  int Numbers() const { return VehicleBatch<Vehicle>::kNumbers; }
+  void Save(int i, double* numbers) const {
+    const auto state = this->StateOf(i);
+    std::memcpy(numbers, &state, sizeof state);
+  }
+  void Restore(int i, const double* numbers) {
+    auto state = this->StateOf(i);
+    std::memcpy(static_cast<void*>(&state), numbers, sizeof state);
+    this->SetState(i, state);
+  }
+};
+
+/// Equal vehicles with wheel-slide protection.
+template <class Vehicle>
+class ProtectedVehicles : public EqualVehicles<Vehicle> {
+  using Base = EqualVehicles<Vehicle>;
+  using Protection = BatchProtection<Vehicle>;
+
+ public:
+  ProtectedVehicles(Base vehicles, double dt)
+      : Base(std::move(vehicles)), protection_(*this->vehicle().params.wheel_slide_protection, dt, *this) {}
+
+  bool Advance(const Track& track, const ExchangeRequest& request, LoadPlaces loads,
+               const ReplyPlaces& reply) {
+    const auto first = static_cast<long>(request.exchange) * request.steps;
+    bool sound = true;
+    for (int step = 0; step < request.steps; ++step) {
+      loads.wheelset_pressure_pa = protection_.Step(first + step, *this, loads.cylinder_pressure_pa);
+      const bool shows = request.record && step + 1 == request.steps;
+      sound &= VehicleBatch<Vehicle>::Advance(track, request.dt_s, 1, loads, reply, shows);
+    }
+    return sound;
+  }
+
+  void Digests(std::uint64_t* digest) const {
+    Base::Digests(digest);
+    std::array<double, Protection::kNumbers> numbers;
+    for (int i = 0; i < this->size(); ++i) {
+      Digest with_protection;
+      with_protection.Add(digest[i]);
+      std::memcpy(numbers.data(), &protection_.StateOf(i), sizeof numbers);
+      for (const double number : numbers) with_protection.Add(number);
+      digest[i] = with_protection.value();
+    }
+  }
+
+  static constexpr int kNumbers = Base::kNumbers + Protection::kNumbers;
+  int Numbers() const { return kNumbers; }
+  void Save(int i, double* numbers) const {
+    Base::Save(i, numbers);
+    std::memcpy(numbers + Base::kNumbers, &protection_.StateOf(i), sizeof(typename Protection::State));
+  }
+  void Restore(int i, const double* numbers) {
+    Base::Restore(i, numbers);
+    typename Protection::State state;
+    std::memcpy(static_cast<void*>(&state), numbers + Base::kNumbers, sizeof state);
+    protection_.SetState(i, state);
+  }
+
+ private:
+  Protection protection_;
+};
+
+/// A model over lanes is one more alternative here.
+using Batch = std::variant<EqualVehicles<Wagon>, EqualVehicles<SixAxleVehicle>, EqualVehicles<LtdVehicle>,
+                           ProtectedVehicles<Wagon>, ProtectedVehicles<SixAxleVehicle>>;
 
 /// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
-Batch MakeBatch(const Vehicle& vehicle, double speed_mps, const std::vector<double>& centre_m) {
+EqualVehicles<Vehicle> MakeBatch(const Vehicle& vehicle, double speed_mps,
+                                 const std::vector<double>& centre_m) {
   auto state = StartState(vehicle, 0.0, speed_mps);
   std::vector<typename VehicleBatch<Vehicle>::State> states;
   for (const double at : centre_m) {
     state.origin_m = at;
     states.push_back(state);
   }
-  return VehicleBatch<Vehicle>(vehicle, BestLaneKernels(), states);
+  return EqualVehicles<Vehicle>(vehicle, BestLaneKernels(), states);
 }
 
 Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,
-                const std::vector<double>& centre_m) {
-  const double speed_mps = scenario.InitialSpeed();
+                double speed_mps, const std::vector<double>& centre_m) {
   if (model == VehicleModel::kTwoD) {
-    return WithBogieVehicle(params,
-                            [&](const auto& vehicle) { return MakeBatch(vehicle, speed_mps, centre_m); });
+    return WithBogieVehicle(params, [&](const auto& vehicle) -> Batch {
+      auto vehicles = MakeBatch(vehicle, speed_mps, centre_m);
+      if (!params.wheel_slide_protection) return vehicles;
+      return ProtectedVehicles(std::move(vehicles), scenario.dt_s);
+    });
   }
   const bool with_inertia = model == VehicleModel::kLtd;
   return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator), speed_mps, centre_m);
@@ -126,7 +206,9 @@ class BatchedBlock : public VehicleBlock {
         centre_m.push_back(scenario.start_position_m + consist.centre_m[i]);
       }
       const VehicleModel model = scenario.ModelOfGroup(group);
-      runs_.push_back({begin, model, MakeBatch(model, consist.vehicle_types[group], scenario, centre_m)});
+      runs_.push_back({begin, model,
+                       MakeBatch(model, consist.vehicle_types[group], scenario,
+                                 scenario.InitialSpeedOfGroup(group), centre_m)});
     }
   }
 
@@ -136,8 +218,8 @@ class BatchedBlock : public VehicleBlock {
       const std::size_t at = offset + run.begin - first_;
       sound &= std::visit(
           [&](auto& batch) {
-            return batch.Advance(track_, request.dt_s, request.steps, PlacesOf(request, at),
-                                 PlacesOf(static_cast<ReplyArrays&>(reply), at), request.record);
+            return batch.Advance(track_, request, PlacesOf(request, at),
+                                 PlacesOf(static_cast<ReplyArrays&>(reply), at));
           },
           run.batch);
     }
@@ -170,9 +252,8 @@ class BatchedBlock : public VehicleBlock {
       std::visit(
           [&](const auto& batch) {
             for (int i = 0; i < batch.size(); ++i, ++rows) {
-              const auto state = batch.StateOf(i);
-              rows->resize(batch.kNumbers);
-              std::memcpy(rows->data(), &state, sizeof state);
+              rows->resize(batch.Numbers());
+              batch.Save(i, rows->data());
             }
           },
           run.batch);
@@ -184,10 +265,8 @@ class BatchedBlock : public VehicleBlock {
       std::visit(
           [&](auto& batch) {
             for (int i = 0; i < batch.size(); ++i, ++rows) {
-              CheckNumbers(run, i, batch.kNumbers, rows->size());
-              auto state = batch.StateOf(i);
-              std::memcpy(static_cast<void*>(&state), rows->data(), sizeof state);
-              batch.SetState(i, state);
+              CheckNumbers(run, i, batch.Numbers(), rows->size());
+              batch.Restore(i, rows->data());
             }
           },
           run.batch);

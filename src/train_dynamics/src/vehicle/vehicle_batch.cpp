@@ -46,6 +46,7 @@ LoadPlaces Behind(LoadPlaces at, int vehicles) {
         if (place != nullptr) place += vehicles;
       },
       at);
+  if (at.wheelset_pressure_pa != nullptr) at.wheelset_pressure_pa += vehicles * kMostWheelsets;
   return at;
 }
 
@@ -74,6 +75,7 @@ class SpareLoads {
     ForEachLoad([used](const LoadInfo&, const double* from, Pack& values,
                        const double*& place) { Fill(from, used, values, place); },
                 at, values_, places_);
+    places_.wheelset_pressure_pa = at.wheelset_pressure_pa;  // those of whole packs
   }
   const LoadPlaces& places() const { return places_; }
 
@@ -170,6 +172,14 @@ VehicleBatch<Vehicle>::VehicleBatch(const Vehicle& vehicle, const LaneKernels& k
 template <class Vehicle>
 typename VehicleBatch<Vehicle>::State VehicleBatch<Vehicle>::StateOf(int i) const {
   return Unpack<State>(states_, i);
+}
+
+template <class Vehicle>
+double VehicleBatch<Vehicle>::NumberOf(int i, int field) const {
+  const std::size_t lanes = kernels_.lanes, pack = i / lanes, lane = i % lanes;
+  double number;
+  std::memcpy(&number, &states_[pack * lanes * sizeof(State) + (field * lanes + lane) * kDouble], kDouble);
+  return number;
 }
 
 template <class Vehicle>

@@ -21,15 +21,17 @@ inline constexpr std::initializer_list<std::pair<const char*, VehicleModel>> kVe
 struct ConsistGroupParams {
   VehicleParams vehicle;
   int count = 1;
-  int vehicles_per_unit = 1;                         ///< 2: pairs, as of draw-bar wagons
-  ConnectionParams unit_connection;                  ///< within a unit
-  std::optional<VehicleModel> model = std::nullopt;  ///< none: that of the scenario
-  bool locomotive = false;                           ///< the vehicles are locomotives: shown as such
+  int vehicles_per_unit = 1;                               ///< 2: pairs, as of draw-bar wagons
+  ConnectionParams unit_connection;                        ///< within a unit
+  std::optional<VehicleModel> model = std::nullopt;        ///< none: that of the scenario
+  std::optional<double> initial_speed_kmh = std::nullopt;  ///< none: that of the scenario
+  bool locomotive = false;                                 ///< the vehicles are locomotives: shown as such
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
     v.Choice("model", model, kVehicleModels);
+    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Integer("count", count, Range{1, 100000, false, false});
     v.Flag("locomotive", locomotive);
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});

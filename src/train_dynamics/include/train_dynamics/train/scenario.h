@@ -85,7 +85,12 @@ struct ScenarioParams {
   std::string ModelNames() const;
   /// Indices of the vehicles recorded in full detail, ascending, each once: those of the 2D model.
   std::vector<int> DetailedVehicles() const;
-  double InitialSpeed() const { return initial_speed_kmh / 3.6; }  ///< [m/s]
+  /// Of the vehicles of a group [m/s].
+  double InitialSpeedOfGroup(std::size_t group) const {
+    return train.consist[group].initial_speed_kmh.value_or(initial_speed_kmh) / 3.6;
+  }
+  /// Of the vehicles' momentum [m/s].
+  double MeanInitialSpeed() const;
 
  private:
   static bool Multiple(double whole, double part);
@@ -93,6 +98,7 @@ struct ScenarioParams {
   void JudgeTimes(std::vector<BrokenRule>& broken) const;
   void JudgeBrake(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;
+  void JudgeSlideProtection(std::vector<BrokenRule>& broken) const;
 };
 
 /// The warnings about a scenario that keeps its rules.

@@ -23,13 +23,14 @@ class VehicleBatch {
   VehicleBatch(const Vehicle& vehicle, const LaneKernels& kernels, const std::vector<State>& states);
 
   int size() const { return size_; }
+  int lanes() const { return kernels_.lanes; }
   const Vehicle& vehicle() const { return vehicle_; }
 
   /// Advances all vehicles by `steps` steps. @param loads, reply  of the first vehicle; those of the others follow
   /// @param with_output  keep what the last step shows
   /// @return whether all vehicles are sound
-  bool Advance(const Track& track, double dt, int steps, const LoadPlaces& loads,
-               const ReplyPlaces& reply, bool with_output);
+  bool Advance(const Track& track, double dt, int steps, const LoadPlaces& loads, const ReplyPlaces& reply,
+               bool with_output);
 
   /// What every vehicle replies, and what a record holds of it, after an Advance with output.
   void Record(const ReplyPlaces& reply, const RecordPlaces& record) const;
@@ -38,6 +39,8 @@ class VehicleBatch {
   static constexpr int kNumbers = sizeof(State) / sizeof(double);
 
   State StateOf(int i) const;
+  /// One number of it.
+  double NumberOf(int i, int field) const;
   /// What vehicle i showed of the last step with output; NaN before.
   Output OutputOf(int i) const;
   void SetState(int i, const State& state);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,8 @@
 
 namespace train_dynamics {
 
+inline constexpr int kMostWheelsets = 6;  ///< of a vehicle
+
 #define TRAIN_DYNAMICS_VALUE(name, unit, given, meaning) T name{};
 #define TRAIN_DYNAMICS_ARRAY(name, unit, given, meaning) std::vector<double> name;
 #define TRAIN_DYNAMICS_POINTER(name, unit, given, meaning) const double* name = nullptr;
@@ -30,6 +33,9 @@ struct VehicleLoads {
   T front_coupler_n{};  ///< tension positive: pulls forward
   T rear_coupler_n{};   ///< tension positive: pulls backward
   TRAIN_DYNAMICS_VEHICLE_LOADS(TRAIN_DYNAMICS_VALUE)
+  /// Of the cylinder of each wheelset [Pa], where the vehicle's wheel-slide protection has them apart; null:
+  /// cylinder_pressure_pa on all.
+  const std::array<T, kMostWheelsets>* wheelset_pressure_pa = nullptr;
 };
 
 /// Those on a row of vehicles.
@@ -44,6 +50,8 @@ struct LoadPlaces {
   const double* front_coupler_n = nullptr;
   const double* rear_coupler_n = nullptr;
   TRAIN_DYNAMICS_VEHICLE_LOADS(TRAIN_DYNAMICS_POINTER)
+  /// VehicleLoads::wheelset_pressure_pa, as [pack][kMostWheelsets][lane of the kernels]; not from the master
+  const double* wheelset_pressure_pa = nullptr;
 };
 
 #undef TRAIN_DYNAMICS_VALUE
@@ -87,18 +95,17 @@ void CopyLoads(const From& from, std::size_t first, std::size_t count, To& to) {
     part.assign(at, at + static_cast<std::ptrdiff_t>(numbers));
   };
   copy(from.coupler_force_n, first, count + 1, to.coupler_force_n);
-  ForEachLoad(
-      [&](const LoadInfo&, const auto& whole, auto& part) {
-        whole.empty() ? part.clear() : copy(whole, first, count, part);
-      },
-      from, to);
+  ForEachLoad([&](const LoadInfo&, const auto& whole,
+                  auto& part) { whole.empty() ? part.clear() : copy(whole, first, count, part); },
+              from, to);
 }
 
 /// Whether two structs or messages hold the same loads.
 template <class A, class B>
 bool AreSameLoads(const A& a, const B& b) {
   bool same = a.coupler_force_n == b.coupler_force_n;
-  ForEachLoad([&same](const LoadInfo&, const auto& one, const auto& other) { same = same && one == other; }, a, b);
+  ForEachLoad([&same](const LoadInfo&, const auto& one, const auto& other) { same = same && one == other; },
+              a, b);
   return same;
 }
 

@@ -9,6 +9,7 @@
 #include "train_dynamics/contact/normal_contact.h"
 #include "train_dynamics/contact/polach.h"
 #include "train_dynamics/resistance/propulsion.h"
+#include "train_dynamics/slide_protection/slide_protection.h"
 #include "train_dynamics/spring/linear_spring_damper.h"
 #include "train_dynamics/suspension/centre_plate.h"
 #include "train_dynamics/suspension/friction_wedge.h"
@@ -92,6 +93,8 @@ struct VehicleParams {
   double bolster_guide_height_m = kRequired;
   CentrePlateParams centre_plate;
   BrakeRiggingParams brake_rigging;
+  std::optional<SlideProtectionParams>
+      wheel_slide_protection;  ///< not given: the vehicle has none (2D model)
   PropulsionResistanceParams propulsion_resistance;
 
   template <class Visitor>
@@ -116,6 +119,7 @@ struct VehicleParams {
     v.Number("bolster_guide_height_m", bolster_guide_height_m, kPositive);
     v.Group("centre_plate", centre_plate);
     v.Group("brake_rigging", brake_rigging);
+    v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection");
     v.Group("propulsion_resistance", propulsion_resistance);
     v.Check(wheelsets_per_bogie == 3 || middle_wheelset_offset_m == 0.0, "middle_wheelset_offset_m",
             "belongs to wheelsets_per_bogie 3 only", {"wheelsets_per_bogie"});

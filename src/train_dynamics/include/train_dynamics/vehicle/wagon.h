@@ -123,6 +123,8 @@ struct BogieVehicle {
     }
     return fields;
   }();
+  /// Of the state as an array of numbers: the carbody's speed, the first wheelset's rotation; the others' follow.
+  static constexpr int kSpeed = 1 + 3 * kBodies + kCarbody, kFirstSpin = 1 + 5 * kBodies + kWheelset1;
 
   VehicleParams params;
   FrictionWedge wedge;  ///< without springs, hence without forces, where there are no wedges

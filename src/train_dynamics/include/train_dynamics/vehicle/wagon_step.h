@@ -139,6 +139,7 @@ struct OuterForces {
   T shoes;                            ///< their largest friction at the vehicle's speed [N], >= 0
   T rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
   T traction;                         ///< at one wheelset, forward positive [N]
+  const std::array<T, kMostWheelsets>* wheelset_pressure;  ///< see VehicleLoads
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
@@ -161,6 +162,7 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& trac
   outer.dynamic_brake = kShare * loads.dynamic_brake_n;
   outer.curving = kShare * loads.curving_resistance_n;
   outer.traction = kShare * loads.traction_n;
+  outer.wheelset_pressure = loads.wheelset_pressure_pa;
   return outer;
 }
 
@@ -184,9 +186,32 @@ struct ShoeForces {
   std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels that stand, >= turning
 };
 
+/// The same where each wheelset has a cylinder pressure of its own.
+template <class T, int kPerBogie>
+[[gnu::noinline, gnu::flatten]] ShoeForces<T, kPerBogie> ShoeForcesOfCylinders(
+    const BogieVehicle<kPerBogie>& w, const std::array<T, kMostWheelsets>& pressure,
+    const BodyVector<T, kPerBogie>& v0) {
+  const BrakeRiggingParams& rigging = w.params.brake_rigging;
+  const double share = rigging.shoe_load_per_pressure_n_per_pa / kWheelsetsOf<kPerBogie>;
+  ShoeForces<T, kPerBogie> shoes;
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const T load = share * pressure[i];
+    if (rigging.friction_speed == FrictionSpeed::kVehicle) {
+      shoes.turning[i] = load * ShoeFriction(rigging.shoe_friction, v0.x[kCarbody]);
+      shoes.standing[i] = shoes.turning[i];
+    } else {
+      shoes.turning[i] =
+          load * ShoeFriction(rigging.shoe_friction, w.rolling.radius_m * v0.pitch[kWheelset1 + i]);
+      shoes.standing[i] = load * rigging.shoe_friction.standstill_friction_coefficient;
+    }
+  }
+  return shoes;
+}
+
 template <class T, int kPerBogie>
 ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                                       const BodyVector<T, kPerBogie>& v0) {
+  if (outer.wheelset_pressure != nullptr) return ShoeForcesOfCylinders(w, *outer.wheelset_pressure, v0);
   const BrakeRiggingParams& rigging = w.params.brake_rigging;
   ShoeForces<T, kPerBogie> shoes;
   if (rigging.friction_speed == FrictionSpeed::kVehicle) {

@@ -53,7 +53,7 @@ inline bool IsPlain(const LtdVehicle& /*vehicle*/, const Track& /*track*/) { ret
 /// Whether a load that few trains have is given.
 template <class T>
 bool HasRareLoads(const LoadPlaces& places) {
-  bool has = false;
+  bool has = places.wheelset_pressure_pa != nullptr;
   ForEachLoad([&has](const LoadInfo& load,
                      const double* place) { has |= load.given == Given::kWhereUsed && place != nullptr; },
               places);
@@ -94,7 +94,13 @@ template <class T, bool kAll, class Vehicle>
     const int first = i * kLanesOf<T>;
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
-    const VehicleLoads<T> loads = LoadsAt<T, kAll>(load_places, first);
+    VehicleLoads<T> loads = LoadsAt<T, kAll>(load_places, first);
+    std::array<T, kMostWheelsets> pressure;
+    if (kAll && load_places.wheelset_pressure_pa != nullptr) {
+      const double* at = load_places.wheelset_pressure_pa + first * kMostWheelsets;
+      for (int j = 0; j < kMostWheelsets; ++j) pressure[j] = Load<T>(at + j * kLanesOf<T>);
+      loads.wheelset_pressure_pa = &pressure;
+    }
     for (int step = 1; step < steps; ++step) {
       Step<kAll>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
     }
