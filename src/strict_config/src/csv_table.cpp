@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "strict_config/scalar.h"
 #include "strict_config/suggestion.h"
@@ -12,22 +13,115 @@
 namespace strict_config {
 namespace {
 
+constexpr const char* kNoteColumn = "note";
+
 std::string Trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == std::string::npos) return "";
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
-/// The values of a line; at most one more than the largest table has.
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> cells;
-  for (std::size_t begin = 0; begin <= line.size() && cells.size() <= CsvLimits::kColumns;) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(Trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
+/// Where the cell that begins at `begin` ends: at its separator, or at the end of the line. A quote is only
+/// one at the begin of a cell.
+std::size_t EndOfCell(const std::string& line, std::size_t begin, char separator) {
+  const std::size_t first = line.find_first_not_of(" \t", begin);
+  if (first == std::string::npos || line[first] != '"' || separator == '"')
+    return std::min(line.find(separator, begin), line.size());
+  std::size_t i = first + 1;
+  for (; i < line.size(); ++i) {
+    if (line[i] != '"') continue;
+    if (i + 1 < line.size() && line[i + 1] == '"') {
+      ++i;
+    } else {
+      break;
+    }
   }
-  return cells;
+  return std::min(line.find(separator, i), line.size());
 }
+
+/// What is in a trimmed cell, or nothing if its quotes are wrong.
+std::optional<std::string> Unquoted(const std::string& cell) {
+  if (cell.empty() || cell[0] != '"') return cell;
+  std::string text;
+  for (std::size_t i = 1; i < cell.size(); ++i) {
+    if (cell[i] != '"') {
+      text += cell[i];
+    } else if (i + 1 < cell.size() && cell[i + 1] == '"') {
+      text += cell[++i];
+    } else {
+      return i + 1 == cell.size() ? std::optional<std::string>(Trimmed(text)) : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The lines of a table one after the other, as cells.
+class CsvLines {
+ public:
+  CsvLines(std::string file, std::string text, ErrorList& errors)
+      : file_(std::move(file)), text_(std::move(text)), errors_(errors) {
+    constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.compare(0, 3, kByteOrderMark) == 0) next_ = 3;
+  }
+
+  /// Moves to the next line that holds cells; false when there is none.
+  bool Next() {
+    while (next_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', next_), text_.size());
+      const std::string content = text_.substr(next_, end - next_);
+      next_ = end + 1;
+      ++line_;
+      const std::size_t first = content.find_first_not_of(" \t\r");
+      if (first == std::string::npos || content[first] == '#') continue;
+      if (separator_ == '\0') separator_ = SeparatorOf(content);
+      Split(content);
+      return true;
+    }
+    return false;
+  }
+
+  /// Whether the quotes of the line are wrong, which has been reported.
+  bool is_bad() const { return is_bad_; }
+
+  int line() const { return line_; }
+  const std::vector<std::string>& cells() const {
+    return cells_;
+  }  ///< at most one more than a table may have
+
+ private:
+  static char SeparatorOf(const std::string& header) {
+    for (const char separator : {',', ';', '\t'}) {
+      if (EndOfCell(header, 0, separator) < header.size()) return separator;
+    }
+    return ',';
+  }
+
+  void Split(const std::string& content) {
+    cells_.clear();
+    is_bad_ = false;
+    for (std::size_t begin = 0; begin <= content.size() && cells_.size() <= CsvLimits::kColumns;) {
+      const std::size_t end = EndOfCell(content, begin, separator_);
+      const std::string cell = Trimmed(content.substr(begin, end - begin));
+      const std::optional<std::string> text = Unquoted(cell);
+      if (!text && !is_bad_) {
+        is_bad_ = true;
+        errors_.Add(file_, line_, "",
+                    "has a quote that does not end, or text behind its end: " + Printable(cell) +
+                        " (a quote within quotes is written twice)");
+      }
+      cells_.push_back(text.value_or(""));
+      begin = end + 1;
+    }
+  }
+
+  std::string file_, text_;
+  ErrorList& errors_;
+  std::size_t next_ = 0;
+  int line_ = 0;
+  char separator_ = '\0';
+  std::vector<std::string> cells_;
+  bool is_bad_ = false;
+};
 
 bool CheckHeader(const CsvTable& table, ErrorList& errors) {
   const auto refuse = [&](const std::string& reason) {
@@ -52,24 +146,48 @@ bool CheckHeader(const CsvTable& table, ErrorList& errors) {
   return ok;
 }
 
-void ReadRow(const std::vector<std::string>& cells, int line, CsvTable& table, ErrorList& errors) {
-  if (cells.size() != table.columns.size()) {
+/// Reads the header and calls row(cells, line) for each line behind it, with as many cells as there are columns.
+/// @return whether the header is right and some row was read
+template <class Row>
+bool ReadRows(const std::string& file, CsvTable& table, ErrorList& errors, const Row& row) {
+  table.file = DisplayPath(file);
+  std::optional<std::string> text = ReadTextFile(file, CsvLimits::kBytes, errors);
+  if (!text) return false;
+  CsvLines lines(table.file, *std::move(text), errors);
+  if (!lines.Next()) {
+    errors.Add(table.file, 0, "", "is empty: a table begins with a line that names its columns");
+    return false;
+  }
+  table.header_line = lines.line();
+  table.columns = lines.cells();
+  if (lines.is_bad()) return false;
+  // A separator at the end of the header, as spreadsheets write it.
+  const bool is_closed =
+      table.columns.size() > 1 && table.columns.size() <= CsvLimits::kColumns && table.columns.back().empty();
+  if (is_closed) table.columns.pop_back();
+  if (!CheckHeader(table, errors)) return false;
+  const std::size_t columns = table.columns.size();
+  std::size_t rows = 0;
+  while (!errors.full() && lines.Next()) {
+    if (lines.is_bad()) continue;
+    if ((++rows) * columns > CsvLimits::kValues) {
+      errors.Add(table.file, lines.line(), "",
+                 "exceeds the limit of " + std::to_string(CsvLimits::kValues) + " values");
+      return false;
+    }
+    const std::vector<std::string>& cells = lines.cells();
+    const bool row_is_closed =
+        cells.size() == columns + 1 && columns < CsvLimits::kColumns && cells.back().empty();
+    if (cells.size() == columns || row_is_closed) {
+      row(cells, lines.line());
+      continue;
+    }
     const std::string more = cells.size() > CsvLimits::kColumns ? "more than " : "";
-    const std::size_t count = std::min(cells.size(), CsvLimits::kColumns);
-    errors.Add(table.file, line, "",
-               "has " + more + std::to_string(count) + " values, but the header names " +
-                   std::to_string(table.columns.size()) + " columns");
-    return;
+    errors.Add(table.file, lines.line(), "",
+               "has " + more + std::to_string(std::min(cells.size(), CsvLimits::kColumns)) +
+                   " values, but the header names " + std::to_string(columns) + " columns");
   }
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::optional<double> value = ParseNumber(cells[i]);
-    table.values[i].push_back(value.value_or(0.0));
-    if (value) continue;
-    const std::string got = cells[i].empty() ? "nothing" : "'" + Printable(cells[i]) + "'";
-    errors.Add(table.file, line, Printable(table.columns[i]),
-               NumberRule(cells[i], /*quoted=*/false, table.columns[i]) + ", got " + got);
-  }
-  table.row_lines.push_back(line);
+  return rows > 0;
 }
 
 }  // namespace
@@ -83,38 +201,50 @@ const std::vector<double>* CsvTable::Column(const std::string& name, ErrorList& 
 
 CsvTable ReadCsvTable(const std::string& file, ErrorList& errors) {
   CsvTable table;
-  table.file = DisplayPath(file);
-  const std::optional<std::string> text = ReadTextFile(file, CsvLimits::kBytes, errors);
-  if (!text) return table;
-
-  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
-  std::size_t begin = text->compare(0, 3, kByteOrderMark) == 0 ? 3 : 0;
-  for (int line = 1; begin < text->size(); ++line) {
-    const std::size_t end = std::min(text->find('\n', begin), text->size());
-    const std::string content = Trimmed(text->substr(begin, end - begin));
-    begin = end + 1;
-    if (content.empty() || content[0] == '#') continue;
-    if (table.header_line == 0) {
-      table.header_line = line;
-      table.columns = Cells(content);
-      if (!CheckHeader(table, errors)) return table;
-      table.values.resize(table.columns.size());
-      continue;
+  const auto add_row = [&](const std::vector<std::string>& cells, int line) {
+    table.values.resize(table.columns.size());
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      const std::optional<double> value = ParseNumber(cells[i]);
+      table.values[i].push_back(value.value_or(0.0));
+      if (value) continue;
+      const std::string got = cells[i].empty() ? "nothing" : "'" + Printable(cells[i]) + "'";
+      errors.Add(table.file, line, Printable(table.columns[i]),
+                 NumberRule(cells[i], /*quoted=*/false, table.columns[i]) + ", got " + got);
     }
-    if ((table.row_lines.size() + 1) * table.columns.size() > CsvLimits::kValues) {
-      errors.Add(table.file, line, "",
-                 "exceeds the limit of " + std::to_string(CsvLimits::kValues) + " values");
-      return table;
-    }
-    ReadRow(Cells(content), line, table, errors);
-    if (errors.full()) return table;
-  }
-  if (table.header_line == 0) {
-    errors.Add(table.file, 0, "", "is empty: a table begins with a line that names its columns");
-  } else if (table.row_lines.empty() && errors.empty()) {
+    table.row_lines.push_back(line);
+  };
+  if (!ReadRows(file, table, errors, add_row) && errors.empty())
     errors.Add(table.file, table.header_line, "", "names columns, but no line of numbers follows");
-  }
   return table;
+}
+
+NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document,
+                    ErrorList& errors) {
+  const std::size_t errors_before = errors.reports();
+  CsvTable table;
+  auto list = std::make_shared<Node>();
+  list->kind = Node::Kind::kList;
+  const auto add_row = [&](const std::vector<std::string>& cells, int line) {
+    auto map = std::make_shared<Node>();
+    map->kind = Node::Kind::kMap;
+    map->source = {document, line};
+    map->is_row = true;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (cells[i].empty() || table.columns[i] == kNoteColumn) continue;
+      auto value = std::make_shared<Node>();
+      value->kind = Node::Kind::kScalar;
+      value->source = map->source;
+      value->text = cells[i];
+      map->entries.push_back({table.columns[i], {document, table.header_line}, std::move(value)});
+    }
+    list->items.push_back(std::move(map));
+  };
+  const bool has_rows = ReadRows(file, table, errors, add_row);
+  list->source = {document, table.header_line};
+  if (errors.reports() != errors_before) return nullptr;
+  if (has_rows) return list;
+  list->source.Report(errors, "", "names columns, but no row follows");
+  return nullptr;
 }
 
 }  // namespace strict_config

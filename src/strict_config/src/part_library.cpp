@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "strict_config/csv_table.h"
 #include "strict_config/suggestion.h"
 #include "strict_config/text_file.h"
 
@@ -130,13 +131,31 @@ NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const
   return below ? Merge(below, WithoutBase(node)) : nullptr;
 }
 
-NodePtr PartLibrary::ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
-                                      const KeyPath& path, FileChain& chain) {
-  if (reference->source.document->stands_alone) {
-    reference->source.Report(errors_, key,
-                             "must be a map, because no files are read here, got " + Describe(*reference));
+bool PartLibrary::MayFollow(const Node& reference, const KeyPath& key) {
+  if (!reference.source.document->stands_alone) return true;
+  reference.source.Report(errors_, key,
+                          "must be a map, because no files are read here, got " + Describe(reference));
+  return false;
+}
+
+NodePtr PartLibrary::ResolveTable(const NodePtr& reference, const KeyPath& path) {
+  if (!MayFollow(*reference, path)) return nullptr;
+  const fs::path file = Normal(reference->source.document->folder / reference->text);
+  if (!Exists(file)) {
+    reference->source.Report(
+        errors_, path, "names the file " + Describe(*reference) + ", but there is no " + DisplayPath(file));
     return nullptr;
   }
+  const auto [cached, is_new] = files_.try_emplace(file);
+  if (!is_new) return cached->second;
+  const fs::path folder = file.parent_path();
+  const auto document = std::make_shared<const Document>(Document{DisplayPath(file), folder, folder});
+  return cached->second = ReadCsvList(file.string(), document, errors_);
+}
+
+NodePtr PartLibrary::ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
+                                      const KeyPath& path, FileChain& chain) {
+  if (!MayFollow(*reference, key)) return nullptr;
   const auto [located, is_new] = located_.try_emplace(reference);
   if (is_new) located->second = Locate(*reference, key, kind);
   const fs::path& file = located->second;
@@ -230,6 +249,10 @@ void PartLibrary::NoteAmbiguity(const fs::path& used, const fs::path& other) {
   if (ours && theirs && *ours == *theirs) return;
   ambiguities_.insert(DisplayPath(used) + " is used; " + DisplayPath(Normal(other)) +
                       " has the same name, another content, and is not");
+}
+
+bool IsTableReference(const Node& value) {
+  return value.kind == Node::Kind::kScalar && fs::path(value.text).extension() == ".csv";
 }
 
 std::vector<fs::path> SearchRootsFromEnvironment() {

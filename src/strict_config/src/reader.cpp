@@ -4,9 +4,11 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "strict_config/scalar.h"
 #include "strict_config/suggestion.h"
+#include "strict_config/text_file.h"
 
 namespace strict_config {
 namespace {
@@ -37,6 +39,15 @@ std::size_t FindKey(const std::string& text, const std::string& key) {
   while (at != std::string::npos && ((at > 0 && goes_on(at - 1)) || goes_on(at + key.size())))
     at = text.find(key, at + 1);
   return at;
+}
+
+/// A map that holds the reference to a table under a key.
+NodePtr AsMap(const NodePtr& reference, const char* table_key) {
+  auto map = std::make_shared<Node>();
+  map->kind = Node::Kind::kMap;
+  map->source = reference->source;
+  map->entries.push_back({table_key, reference->source, reference});
+  return map;
 }
 
 }  // namespace
@@ -128,7 +139,7 @@ void Reader::Text(const char* key, std::string& value) {
 }
 
 void Reader::Numbers(const char* key, std::vector<double>& values, const Range& range) {
-  const std::optional<Value> list = FindItems(key, "numbers");
+  const std::optional<Value> list = FindItems(key, "numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();
   for (std::size_t i = 0; i < list->node->items.size(); ++i) {
@@ -137,7 +148,7 @@ void Reader::Numbers(const char* key, std::vector<double>& values, const Range& 
 }
 
 void Reader::Integers(const char* key, std::vector<int>& values, const Range& range) {
-  const std::optional<Value> list = FindItems(key, "whole numbers");
+  const std::optional<Value> list = FindItems(key, "whole numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();
   for (std::size_t i = 0; i < list->node->items.size(); ++i) {
@@ -149,12 +160,12 @@ void Reader::Check(bool ok, const std::string& key, const std::string& rule, con
   if (ok) return;
   const ReadSession::Spot spot = session_.Locate(Path(key).text);
   std::string text = WithNumbers(rule, reads);
-  const auto number = numbers_.find(key);
+  const Shown* const number = FindNumber(key);
   const bool is_reference = session_.read.count(spot.path.text) > 0;
   if (spot.value && spot.value->kind == Node::Kind::kScalar && !is_reference) {
     text += ", got " + Describe(*spot.value);
-  } else if (!spot.value && number != numbers_.end()) {
-    text += ", got " + number->second.text + " (default)";
+  } else if (!spot.value && number != nullptr) {
+    text += ", got " + ShortestDecimal(number->value) + " (default)";
   }
   std::vector<std::string> keys(reads.begin(), reads.end());
   if (!keys.empty()) keys.push_back(FirstStep(key));
@@ -179,16 +190,21 @@ void Reader::BeginKey(const std::string& key) {
 }
 
 void Reader::NoteNumber(const char* key, double value, bool is_default) {
-  numbers_[key] = {ShortestDecimal(value), is_default};
+  numbers_.push_back({key, {value, is_default}});
+}
+
+const Reader::Shown* Reader::FindNumber(const std::string& key) const {
+  const auto found = std::find_if(numbers_.rbegin(), numbers_.rend(),
+                                  [&key](const auto& number) { return number.first == key; });
+  return found == numbers_.rend() ? nullptr : &found->second;
 }
 
 std::string Reader::WithNumbers(std::string rule, const Keys& keys) const {
   for (const std::string key : keys) {
-    const auto number = numbers_.find(key);
+    const Shown* const number = FindNumber(key);
     const std::size_t at = FindKey(rule, key);
-    if (number == numbers_.end() || at == std::string::npos) continue;
-    const Shown& shown = number->second;
-    rule.insert(at + key.size(), " (" + shown.text + (shown.is_default ? ", default)" : ")"));
+    if (number == nullptr || at == std::string::npos) continue;
+    rule.insert(at + key.size(), " (" + number->Text() + ")");
   }
   return rule;
 }
@@ -249,8 +265,12 @@ Reader::Value Reader::Item(const Value& list, std::size_t index) {
   return {node, node->source, path};
 }
 
-std::optional<Reader::Value> Reader::FindItems(const char* key, const char* of_what) {
-  const Value found = Find(key);
+std::optional<Reader::Value> Reader::FindItems(const char* key, const char* of_what, bool may_be_table) {
+  Value found = Find(key);
+  if (may_be_table && found && IsTableReference(*found.node)) {
+    found.node = session_.library.ResolveTable(found.node, found.path);
+    if (!found) return std::nullopt;  // reported
+  }
   const bool is_list = found && found.node->kind == Node::Kind::kList;
   CheckIndices(found.path, is_list ? found.node->items.size() : 0);
   if (is_list) {
@@ -284,6 +304,7 @@ Reader::Place Reader::MapPlace(const Value& value) {
   place.source = value.source;
   place.path = value.path;
   place.chain = place_.chain;
+  if (value.node->is_row) place.path.part = place.path.text.size();
   if (value.node->kind == Node::Kind::kMap) {
     place.state = Place::State::kMap;
     place.map = value.node;
@@ -317,8 +338,10 @@ Reader::Place Reader::FindGroup(const char* key, Absent absent) {
           place_.chain};
 }
 
-Reader::Place Reader::FindPart(const char* key, const char* kind) {
-  const Value found = Find(key);
+Reader::Place Reader::FindPart(const char* key, const char* kind, const char* table_key) {
+  Value found = Find(key);
+  if (found && table_key != nullptr && IsTableReference(*found.node))
+    found.node = AsMap(found.node, table_key);
   if (found) return PartPlace(found, kind);
   const bool is_read = !session_.overrides.Below(found.path.text).empty();
   return {is_read ? Place::State::kMap : Place::State::kAbsent, nullptr, found.source, found.path,
@@ -326,7 +349,7 @@ Reader::Place Reader::FindPart(const char* key, const char* kind) {
 }
 
 std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, const char* kind) {
-  const std::optional<Value> list = FindItems(key, kind ? "parts" : "maps");
+  const std::optional<Value> list = FindItems(key, kind ? "parts" : "maps", /*may_be_table=*/true);
   if (!list) return std::nullopt;
   const std::size_t size = list->node->items.size();
   if (size > ReadSession::kMaxItems) {
@@ -345,7 +368,8 @@ std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, cons
 
 void Reader::Finish() {
   BeginKey("");
-  for (const Entry& entry : place_.map ? place_.map->entries : std::vector<Entry>()) {
+  static const std::vector<Entry> kNone;
+  for (const Entry& entry : place_.map ? place_.map->entries : kNone) {
     if (IsIn(known_, entry.key)) continue;
     const std::string hint = session_.errors.full() ? "" : KeyHint(entry.key, known_);
     entry.source.Report(session_.errors, Path(Printable(entry.key)), "is not a known key" + hint);
@@ -394,9 +418,20 @@ KeyPath Reader::Path(const std::string& key) const {
   return {Joined(place_.path.text, key), place_.path.part};
 }
 
-Reader::Place Reader::RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options) {
+Reader::Place Reader::RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options,
+                                const char* table_key) {
   Place place;
   place.path = options.root_name;
+  if (table_key != nullptr && std::filesystem::path(file).extension() == ".csv") {
+    auto reference = std::make_shared<Node>();
+    reference->kind = Node::Kind::kScalar;
+    reference->text = file;
+    reference->source.document = std::make_shared<const Document>(Document{DisplayPath(file), "", "", false});
+    place.source = reference->source;
+    place.map = AsMap(reference, table_key);
+    place.state = Place::State::kMap;
+    return place;
+  }
   const NodePtr root = session.library.Open(file, place.path);
   if (!root) return place;
   const std::filesystem::path& folder = root->source.document->folder;

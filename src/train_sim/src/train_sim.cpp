@@ -8,6 +8,7 @@
 
 #include "strict_config/error_list.h"
 #include "train_sim/check_command.h"
+#include "train_sim/route_command.h"
 #include "train_sim/run_command.h"
 #include "train_sim/vehicle_commands.h"
 #include "train_sim/verify_command.h"
@@ -21,6 +22,7 @@ constexpr const char* kDescription =
     "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
     "  train_sim run --resume results/emergency\n"
     "  train_sim check my_scenario.yaml\n"
+    "  train_sim route my_line.csv --plot my_line.svg\n"
     "  train_sim verify results/emergency\n"
     "  train_sim modes config/vehicles/ore_wagon.yaml\n"
     "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
@@ -99,6 +101,14 @@ int Main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   check->callback([&] { command = [&] { return train_sim::CheckScenario(planned); }; });
+
+  train_sim::RouteOptions route;
+  CLI::App* show_route = app.add_subcommand(
+      "route", "check a route - a track, a table of its points (CSV) or a scenario's - and draw it");
+  AddInput(show_route, "FILE", "track, table or scenario", route.file, route.overrides);
+  show_route->add_option("--plot", route.plot, "draw it in this SVG file, over the position");
+  show_route->add_option("--csv", route.csv, "write it to this file as a table of points");
+  show_route->callback([&] { command = [&] { return train_sim::ShowRoute(route); }; });
 
   train_sim::VerifyOptions recording;
   CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");

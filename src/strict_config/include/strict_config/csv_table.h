@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "strict_config/error_list.h"
+#include "strict_config/yaml_tree.h"
 
 namespace strict_config {
 
@@ -27,12 +29,24 @@ struct CsvLimits {
   static constexpr std::size_t kValues = 20000000;
 };
 
-/// Reads comma-separated numbers.
+/// Reads a table of numbers.
 ///
 /// The first line names the columns, each name once. Each further line has one finite decimal number per
-/// column. Empty lines, and lines that start with '#', are skipped; spaces around values do not matter;
-/// nothing is quoted. All that is wrong is added to `errors`; the table is only meant to be used when there
-/// is nothing.
+/// column. Columns are separated by commas or, where the header has none, by semicolons or tabs. A cell may
+/// stand in double quotes, within which a quote is written twice; a quote ends on its line. A separator at
+/// the end of every line makes no column. Empty lines, and lines that start with '#', are skipped; spaces
+/// around cells do not matter. All that is wrong is added to `errors`; the table is only meant to be used
+/// when there is nothing.
 CsvTable ReadCsvTable(const std::string& file, ErrorList& errors);
+
+/// Reads such a table as a list of maps: each row one map, with the names of the columns as keys.
+///
+/// Cells hold text here as well; one that is empty is not given. A column named `note` is left out. Messages
+/// about a value name its line, those about a key the header's.
+///
+/// @param document  of which the nodes say that they are
+/// @return null after an error
+NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document,
+                    ErrorList& errors);
 
 }  // namespace strict_config

@@ -20,6 +20,7 @@ using FileChain = std::vector<std::filesystem::path>;
 /// .yml is a path relative to the file that it stands in. Any other is a name: NAME.yaml in a folder called
 /// `kind`, looked for in the folder of the referring file, in each of its ancestors, and in the search roots.
 /// A map may start from another part of its kind, `base: REFERENCE`, and change what it needs.
+/// A list of maps may be a reference to a file that ends in .csv: a table with a row for each of its maps.
 class PartLibrary {
  public:
   PartLibrary(std::vector<std::filesystem::path> search_roots, ErrorList& errors);
@@ -28,6 +29,9 @@ class PartLibrary {
   NodePtr Open(const std::filesystem::path& file, const KeyPath& path);
   /// The root of a text that refers to no files, or null after reporting an error under `label`.
   NodePtr OpenText(const std::string& text, const std::string& label, const KeyPath& path);
+
+  /// The list of the rows of a table of which `reference` is the file, or null after reporting an error.
+  NodePtr ResolveTable(const NodePtr& reference, const KeyPath& path);
 
   /// The map that `node` stands for, with its references and bases resolved, or null after reporting an
   /// error.
@@ -44,6 +48,8 @@ class PartLibrary {
   const std::set<std::string>& Ambiguities() const { return ambiguities_; }
 
  private:
+  /// Whether a reference may be followed; false after reporting an error.
+  bool MayFollow(const Node& reference, const KeyPath& key);
   NodePtr Parse(const std::string& text, Document document, const KeyPath& path);
   /// @param key  the path of the reference itself: that of the part, or of its base
   NodePtr ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
@@ -59,6 +65,9 @@ class PartLibrary {
   std::map<NodePtr, std::filesystem::path> located_;  ///< the file of each reference
   std::set<std::string> ambiguities_;
 };
+
+/// Whether a value is a reference to a table.
+bool IsTableReference(const Node& value);
 
 /// The folders listed in the environment variable TRAIN_BRAKE_CONFIG, separated by ':'.
 std::vector<std::filesystem::path> SearchRootsFromEnvironment();

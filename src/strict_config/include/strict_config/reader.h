@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "strict_config/error_list.h"
@@ -111,7 +112,7 @@ class Reader {
 
   template <class Struct>
   void Part(const char* key, Struct& value, const char* kind) {
-    const Place place = FindPart(key, kind);
+    const Place place = FindPart(key, kind, TableKey<Struct>(0));
     if (place.state == Place::State::kAbsent) {
       // One error for a part that has to be given says more than one for each of its fields.
       if (!IsComplete(place, value)) ReportMissingPart(key, kind);
@@ -121,7 +122,7 @@ class Reader {
   }
   template <class Struct>
   void Part(const char* key, std::optional<Struct>& value, const char* kind) {
-    ReadOptional(FindPart(key, kind), value);
+    ReadOptional(FindPart(key, kind, TableKey<Struct>(0)), value);
   }
 
   template <class Struct>
@@ -161,7 +162,18 @@ class Reader {
 
   Reader(ReadSession& session, const Place& place);
 
-  static Place RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options);
+  /// Under which key a part that is a table has its rows; null: it may not be one.
+  template <class Struct>
+  static auto TableKey(int /*preferred*/) -> decltype(Struct::kTableKey) {
+    return Struct::kTableKey;
+  }
+  template <class Struct>
+  static const char* TableKey(long /*otherwise*/) {
+    return nullptr;
+  }
+
+  static Place RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options,
+                         const char* table_key);
   static Place TextPlace(ReadSession& session, const std::string& text, const std::string& label);
   static void ReportUnused(ReadSession& session);
 
@@ -170,15 +182,17 @@ class Reader {
   Place MapPlace(const Value& value);
   Place PartPlace(const Value& value, const std::string& kind);
   Place FindGroup(const char* key, Absent absent);
-  Place FindPart(const char* key, const char* kind);
+  Place FindPart(const char* key, const char* kind, const char* table_key);
   std::optional<std::vector<Place>> FindList(const char* key, const char* kind);
-  std::optional<Value> FindItems(const char* key, const char* of_what);
+  std::optional<Value> FindItems(const char* key, const char* of_what, bool may_be_table);
   void CheckIndices(const KeyPath& list, std::size_t size);
   std::optional<std::size_t> ReadChoice(const char* key, const std::vector<std::string>& names);
   std::optional<double> ReadNumber(const Value& value, const char* key, const Range& range);
   std::optional<int> ReadInteger(const Value& value, const char* key, const Range& range);
   void BeginKey(const std::string& key);
   void NoteNumber(const char* key, double value, bool is_default);
+  struct Shown;
+  const Shown* FindNumber(const std::string& key) const;
   std::string WithNumbers(std::string rule, const Keys& keys) const;
   void Finish();
   void ReportMissing(const char* key, const std::string& rule);
@@ -231,10 +245,11 @@ class Reader {
 
   /// What a rule may have to show of a number.
   struct Shown {
-    std::string text;
+    double value;
     bool is_default;
+    std::string Text() const { return ShortestDecimal(value) + (is_default ? ", default" : ""); }
   };
-  std::map<std::string, Shown> numbers_;  ///< by key
+  std::vector<std::pair<const char*, Shown>> numbers_;  ///< with their keys
 
   struct BrokenRule {
     Source source;
@@ -257,7 +272,7 @@ Struct Load(const std::string& file, const LoadOptions& options, ErrorList& erro
   ReadSession session{
       errors, PartLibrary(options.search_roots, errors),
       Overrides(options.overrides, std::filesystem::path(file).parent_path(), options.root_name, errors)};
-  const Reader::Place root = Reader::RootPlace(session, file, options);
+  const Reader::Place root = Reader::RootPlace(session, file, options, Reader::TableKey<Struct>(0));
   if (root.state != Reader::Place::State::kMap) return value;
   Reader reader(session, root);
   value.Visit(reader);

@@ -52,6 +52,7 @@ struct Node {
   bool quoted = false;         ///< the scalar was written in quotes or as a block, so it is no number
   std::vector<NodePtr> items;  ///< of a list
   std::vector<Entry> entries;  ///< of a map, in the order written
+  bool is_row = false;         ///< a map that is a row of a table: its keys are those of the rows beside it
   NodePtr under;               ///< what a map replaced in a merge, when that was a scalar: see Merge
 
   /// The entry of a map, or null.

@@ -241,7 +241,7 @@ void Board::DrawTrain(Drawing& drawing, const Snapshot& snapshot, const Selectio
   const auto followed = static_cast<size_t>(selection.vehicle);
   strip.DrawZoom(drawing, abscissa, edges[followed], edges[followed + 1], layout::kCloseUp);
 
-  if (!scenario_.track.grades.empty() || !scenario_.track.dips.empty()) {
+  if (!elevation_.IsLevel()) {
     drawing.Write({layout::kTrain.right, layout::kTrain.bottom - 1.0}, Align::kRight, layout::kSmallText,
                   fmt::format("heights of the track × {:g}", vertical_exaggeration_), palette::kDark);
   }

@@ -4,17 +4,10 @@
 #include <cmath>
 
 namespace train_brake_rviz {
-namespace {
-
-double SlopeOf(const train_dynamics::GradeParams& grade) { return 0.01 * grade.grade_percent; }
-
-}  // namespace
-
-Elevation::Elevation(const train_dynamics::TrackParams& track) : track_(track), grades_(track.grades) {
+Elevation::Elevation(const train_dynamics::TrackParams& track) : track_(track), grades_(track.Grades()) {
   for (size_t i = 0; i < grades_.size(); ++i) {
-    height_m_.push_back(i == 0 ? 0.0
-                               : height_m_[i - 1] +
-                                     SlopeOf(grades_[i - 1]) * (grades_[i].from_m - grades_[i - 1].from_m));
+    height_m_.push_back(
+        i == 0 ? 0.0 : height_m_[i - 1] + grades_[i - 1].value * (grades_[i].from_m - grades_[i - 1].from_m));
   }
   const double at_zero = (*this)(0.0) - train_dynamics::RailHeightAt(track_, 0.0).height;
   for (double& height : height_m_) height -= at_zero;
@@ -26,7 +19,7 @@ double Elevation::operator()(double position_m) const {
   const auto next = std::upper_bound(grades_.begin(), grades_.end(), position_m,
                                      [](double s, const auto& grade) { return s < grade.from_m; });
   const size_t i = next == grades_.begin() ? 0 : static_cast<size_t>(next - grades_.begin() - 1);
-  return dips + height_m_[i] + SlopeOf(grades_[i]) * (position_m - grades_[i].from_m);
+  return dips + height_m_[i] + grades_[i].value * (position_m - grades_[i].from_m);
 }
 
 double FittingExaggeration(const Elevation& elevation, double begin_m, double end_m, double window_m,

@@ -131,6 +131,17 @@ std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& sc
   return stable_steps;
 }
 
+/// Whether a file holds a scenario and not one of its parts.
+bool IsScenario(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".csv") return false;
+  ErrorList unread;
+  const strict_config::NodePtr root = strict_config::PartLibrary({}, unread).Open(file, "");
+  if (!root) return false;
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  return folder.filename() == "scenarios" || root->Find("train") || root->Find("track") ||
+         root->Find("duration_s");
+}
+
 }  // namespace
 
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
@@ -182,6 +193,14 @@ LoadedScenario LoadScenarioText(const std::string& text, const std::string& labe
     errors.Add(label, 0, "brake", std::string("does not suit the train: ") + error.what());
     throw Error(errors);
   }
+}
+
+TrackParams LoadTrack(const std::string& file, const std::vector<std::string>& overrides) {
+  if (IsScenario(file)) return LoadScenario(file, overrides).params.track;
+  ErrorList errors;
+  TrackParams track = Load<TrackParams>(file, OptionsFor(overrides, "tracks"), errors);
+  ThrowIfAny(errors);
+  return track;
 }
 
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides) {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
-#include "train_dynamics/numeric/trigonometry.h"
 #include "strict_config/validate.h"
+#include "train_dynamics/numeric/trigonometry.h"
 
 namespace train_dynamics {
 namespace {
@@ -106,20 +107,105 @@ std::vector<SurfaceChange> ChangesOf(const std::vector<FrictionPatchParams>& pat
 
 std::vector<TrackParams::BrokenRule> TrackParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
-  JudgeGrades(broken);
+  JudgeOrder(broken);
+  if (broken.empty()) JudgeHeights(broken);
+  JudgePoints(broken);
   JudgeDips(broken);
   JudgeRamps(broken);
   return broken;
 }
 
-void TrackParams::JudgeGrades(std::vector<BrokenRule>& broken) const {
-  for (std::size_t i = 1; i < grades.size(); ++i) {
-    if (grades[i].from_m > grades[i - 1].from_m) continue;
-    broken.push_back(
-        {"grades" + Index(i) + ".from_m",
-         "must be greater than that of the entry before, " + ShortestDecimal(grades[i - 1].from_m),
-         "grades"});
+/// A rule that each position of a list must be greater than the one before.
+template <class Entry, class Position, class Report>
+void JudgeRising(const std::vector<Entry>& entries, const Position& position, const Report& report) {
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    const double before_m = position(entries[i - 1]);
+    if (position(entries[i]) > before_m) continue;
+    report(i, "must be greater than that of the entry before, " + ShortestDecimal(before_m));
   }
+}
+
+void TrackParams::JudgeOrder(std::vector<BrokenRule>& broken) const {
+  const auto judge = [&](const auto& entries, const char* list, const char* key, const auto& position) {
+    JudgeRising(entries, position, [&](std::size_t i, const std::string& text) {
+      broken.push_back({list + Index(i) + "." + key, text, list});
+    });
+  };
+  judge(grades, "grades", "from_m", [](const GradeParams& grade) { return grade.from_m; });
+  judge(heights, "heights", "position_m", [](const HeightParams& height) { return height.position_m; });
+  judge(speed_limits, "speed_limits", "from_m", [](const SpeedLimitParams& limit) { return limit.from_m; });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i].Position() > points[i - 1].Position()) continue;
+    broken.push_back(
+        {"points" + Index(i) + (points[i].position_m ? ".position_m" : ".position_km"),
+         "must lie behind that of the entry before, at " + ShortestDecimal(points[i - 1].Position()) + " m",
+         "points"});
+  }
+  for (std::size_t i = 1; i < curves.size(); ++i) {
+    if (curves[i].from_m >= curves[i - 1].to_m) continue;
+    broken.push_back({"curves" + Index(i) + ".from_m",
+                      "must be at least to_m of the entry before, " + ShortestDecimal(curves[i - 1].to_m),
+                      "curves"});
+  }
+}
+
+/// Grades that heights make are judged like those that are given.
+void TrackParams::JudgeHeights(std::vector<BrokenRule>& broken) const {
+  constexpr double kSteepest = 0.2;
+  const auto judge = [&](std::size_t i, const HeightParams& before, const HeightParams& here,
+                         const char* list) {
+    const double grade = (here.height_m - before.height_m) / (here.position_m - before.position_m);
+    if (std::abs(grade) <= kSteepest) return;
+    broken.push_back({list + Index(i) + ".height_m",
+                      "must not make a grade steeper than 20 % from the height before, " +
+                          ShortestDecimal(before.height_m) + " m at " + ShortestDecimal(before.position_m) +
+                          " m",
+                      list});
+  };
+  for (std::size_t i = 1; i < heights.size(); ++i) judge(i, heights[i - 1], heights[i], "heights");
+  std::optional<HeightParams> before;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].height_m) continue;
+    const HeightParams here{points[i].Position(), *points[i].height_m};
+    if (before) judge(i, *before, here, "points");
+    before = here;
+  }
+}
+
+/// What the points give, nothing else may give.
+void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
+  const auto first_with = [this](const auto& has) -> std::optional<std::size_t> {
+    const auto found = std::find_if(points.begin(), points.end(), has);
+    if (found == points.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - points.begin());
+  };
+  const auto judge = [&](const char* key, const auto& has, bool is_given, const char* other) {
+    const std::optional<std::size_t> first = first_with(has);
+    if (!first || !is_given) return;
+    broken.push_back(
+        {"points" + Index(*first) + "." + key, std::string("must not stand beside ") + other, "points"});
+  };
+  using Point = RoutePointParams;
+  const auto has_grade = [](const Point& p) { return p.Grade().has_value(); };
+  const auto has_height = [](const Point& p) { return p.height_m.has_value(); };
+  const std::optional<std::size_t> first_grade = first_with(has_grade);
+  const char* const grade_key =
+      first_grade && points[*first_grade].grade_percent ? "grade_percent" : "grade_permille";
+  judge(grade_key, has_grade, !grades.empty(), "grades");
+  judge(grade_key, has_grade, !heights.empty(), "heights");
+  judge("height_m", has_height, !grades.empty(), "grades");
+  judge("height_m", has_height, !heights.empty(), "heights");
+  judge("height_m", has_height, first_grade.has_value(), "grades of points");
+  judge(
+      "radius_m", [](const Point& p) { return p.radius_m.has_value(); }, !curves.empty(), "curves");
+  judge(
+      "speed_limit_kmh", [](const Point& p) { return p.speed_limit_kmh.has_value(); }, !speed_limits.empty(),
+      "speed_limits");
+  judge(
+      "friction_coefficient", [](const Point& p) { return p.friction_coefficient.has_value(); },
+      !friction_patches.empty(), "friction_patches");
+  if (!heights.empty() && !grades.empty())
+    broken.push_back({"heights", "must not stand beside grades", "grades"});
 }
 
 void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
@@ -164,27 +250,125 @@ void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
   }
 }
 
-// ---- making it ready -----------------------------------------------------------------------------------------------
+// ---- lists or points -------------------------------------------------------------------------------------------------
 
-Track::Track(const TrackParams& params)
-    : has_dips(!params.dips.empty()),
-      has_patches(!params.friction_patches.empty()),
-      dips_(params.dips),
-      patches_(params.friction_patches) {
-  strict_config::Validate(params);
-  SetGrades(params.grades);
-  SetDips();
-  SetPatches();
+namespace {
+
+/// The value that each point gives from its position on.
+template <class Value>
+void AddSteps(const std::vector<RoutePointParams>& points, const Value& value,
+              std::vector<StepValue>& steps) {
+  for (const RoutePointParams& point : points) {
+    if (const std::optional<double> here = value(point)) steps.push_back({point.Position(), *here});
+  }
 }
 
-void Track::SetGrades(const std::vector<GradeParams>& grades) {
-  std::vector<double> cuts;
-  for (std::size_t i = 0; i < grades.size(); ++i) {
-    if (i > 0) cuts.push_back(grades[i].from_m);  // the first also holds before it
-    grades_.push_back(0.01 * grades[i].grade_percent);
+/// The grades between heights, and level track behind the last. (Before the first the caller sees to that.)
+std::vector<StepValue> GradesBetween(const std::vector<HeightParams>& heights) {
+  std::vector<StepValue> steps;
+  if (heights.empty()) return steps;
+  // The first value of Steps holds before its position as well.
+  steps.push_back({heights.front().position_m - 1.0, 0.0});
+  for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+    const HeightParams &here = heights[i], &next = heights[i + 1];
+    steps.push_back({here.position_m, (next.height_m - here.height_m) / (next.position_m - here.position_m)});
   }
-  if (grades.empty()) grades_.push_back(0.0);
-  grade_pieces_ = Pieces(std::move(cuts));
+  steps.push_back({heights.back().position_m, 0.0});
+  return steps;
+}
+
+}  // namespace
+
+std::vector<StepValue> TrackParams::Grades() const {
+  std::vector<StepValue> steps;
+  for (const GradeParams& grade : grades) steps.push_back({grade.from_m, 0.01 * grade.grade_percent});
+  AddSteps(
+      points, [](const RoutePointParams& point) { return point.Grade(); }, steps);
+  if (!steps.empty()) return steps;
+  std::vector<HeightParams> profile = heights;
+  for (const RoutePointParams& point : points) {
+    if (point.height_m) profile.push_back({point.Position(), *point.height_m});
+  }
+  return GradesBetween(profile);
+}
+
+std::vector<StepValue> TrackParams::Curvatures() const {
+  std::vector<StepValue> steps;
+  if (!curves.empty()) steps.push_back({curves.front().from_m - 1.0, 0.0});
+  for (const CurveParams& curve : curves) {
+    if (steps.back().from_m == curve.from_m) steps.pop_back();
+    steps.push_back({curve.from_m, 1.0 / curve.radius_m});
+    steps.push_back({curve.to_m, 0.0});
+  }
+  AddSteps(
+      points,
+      [](const RoutePointParams& point) -> std::optional<double> {
+        if (!point.radius_m) return std::nullopt;
+        return *point.radius_m == 0.0 ? 0.0 : 1.0 / *point.radius_m;
+      },
+      steps);
+  return steps;
+}
+
+std::vector<StepValue> TrackParams::SpeedLimits() const {
+  std::vector<StepValue> steps;
+  for (const SpeedLimitParams& limit : speed_limits) steps.push_back({limit.from_m, limit.limit_kmh / 3.6});
+  AddSteps(
+      points,
+      [](const RoutePointParams& point) -> std::optional<double> {
+        if (!point.speed_limit_kmh) return std::nullopt;
+        return *point.speed_limit_kmh / 3.6;
+      },
+      steps);
+  return steps;
+}
+
+std::vector<FrictionPatchParams> TrackParams::Patches() const {
+  constexpr double kFarAway = 1e6;  // [m] farther than any train gets
+  std::vector<FrictionPatchParams> patches = friction_patches;
+  std::vector<StepValue> steps;
+  AddSteps(
+      points, [](const RoutePointParams& point) { return point.friction_coefficient; }, steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    FrictionPatchParams patch;
+    patch.from_m = i == 0 ? steps[i].from_m - kFarAway : steps[i].from_m;
+    patch.to_m = i + 1 < steps.size() ? steps[i + 1].from_m : steps[i].from_m + kFarAway;
+    patch.friction_coefficient = steps[i].value;
+    patches.push_back(patch);
+  }
+  return patches;
+}
+
+std::vector<StationParams> TrackParams::Stations() const {
+  std::vector<StationParams> all = stations;
+  for (const RoutePointParams& point : points) {
+    if (!point.station.empty()) all.push_back({point.station, point.Position()});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const StationParams& a, const StationParams& b) {
+    return a.position_m < b.position_m;
+  });
+  return all;
+}
+
+Stretch TrackParams::Extent() const {
+  Stretch extent;
+  if (!points.empty()) extent = {points.front().Position(), points.back().Position()};
+  return {begin_m.value_or(extent.from_m), end_m.value_or(extent.to_m)};
+}
+
+// ---- making it ready -----------------------------------------------------------------------------------------------
+
+Track::Track(const TrackParams& params) : has_dips(!params.dips.empty()), dips_(params.dips) {
+  strict_config::Validate(params);
+  grades_ = Steps(params.Grades(), 0.0);
+  const std::vector<StepValue> curvatures = params.Curvatures();
+  has_curves = !curvatures.empty();
+  curvatures_ = Steps(curvatures, 0.0);
+  speed_limits_ = Steps(params.SpeedLimits(), std::numeric_limits<double>::infinity());
+  patches_ = params.Patches();
+  has_patches = !patches_.empty();
+  SetDips();
+  SetPatches();
 }
 
 void Track::SetDips() {
@@ -221,16 +405,13 @@ void Track::SetPatches() {
 
 // ---- what is under a wheel -----------------------------------------------------------------------------------------
 
-Track::GradeStretch Track::GradeFrom(double position_m) const {
-  const int piece = grade_pieces_.NumberAt(position_m);
-  return {grade_pieces_[piece], grades_[piece]};
-}
+double GradeAt(const Track& track, double position_m) { return track.grades().At(position_m); }
 
-void Track::GradesAt(int count, const double* position_m, double* grade) const {
-  for (int i = 0; i < count; ++i) grade[i] = grades_[grade_pieces_.NumberAt(position_m[i])];
-}
+double CurvatureAt(const Track& track, double position_m) { return track.curvatures().At(position_m); }
 
-double GradeAt(const Track& track, double position_m) { return track.GradeFrom(position_m).grade; }
+double SpeedLimitUnder(const Track& track, double rear_m, double front_m) {
+  return track.speed_limits().SmallestOn(rear_m, front_m);
+}
 
 RailHeight<double> DipHeight(const DipParams& dip, double position_m) {
   const double x = position_m - dip.from_m;

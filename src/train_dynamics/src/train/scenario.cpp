@@ -60,9 +60,9 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
 /// steepest fall ahead, and likewise backwards. With traction this bound must grow.
 Stretch ReachOf(const ScenarioParams& scenario) {
   double steepest_fall = 0.0, steepest_rise = 0.0;
-  for (const GradeParams& grade : scenario.track.grades) {
-    steepest_fall = std::max(steepest_fall, -0.01 * grade.grade_percent);
-    steepest_rise = std::max(steepest_rise, 0.01 * grade.grade_percent);
+  for (const StepValue& grade : scenario.track.Grades()) {
+    steepest_fall = std::max(steepest_fall, -grade.value);
+    steepest_rise = std::max(steepest_rise, grade.value);
   }
   double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
   double rear_m = front_m;

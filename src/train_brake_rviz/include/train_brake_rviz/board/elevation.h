@@ -14,11 +14,12 @@ class Elevation {
   /// [m] above the rail at position 0 without dips
   double operator()(double position_m) const;
 
+  bool IsLevel() const { return grades_.empty() && !track_.has_dips; }
   const train_dynamics::Track& track() const { return track_; }
 
  private:
   train_dynamics::Track track_;
-  std::vector<train_dynamics::GradeParams> grades_;
+  std::vector<train_dynamics::StepValue> grades_;
   std::vector<double> height_m_;  ///< [grade] where each begins
 };
 

@@ -40,6 +40,9 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
 /// @throws Error
 LoadedScenario LoadScenarioText(const std::string& text, const std::string& label);
 
+/// Reads the track of a file: one of a track, a table of its points (CSV), or a scenario that has one.
+TrackParams LoadTrack(const std::string& file, const std::vector<std::string>& overrides);
+
 /// Reads a vehicle file likewise; a Wagon can be built of it.
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides);
 

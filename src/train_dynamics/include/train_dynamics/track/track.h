@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,15 +10,27 @@
 #include "train_dynamics/track/grade.h"
 #include "train_dynamics/track/pieces.h"
 #include "train_dynamics/track/profile.h"
+#include "train_dynamics/track/route.h"
+#include "train_dynamics/track/steps.h"
 
 namespace train_dynamics {
 
 /// The track as a configuration describes it, by position along it [m].
 struct TrackParams {
+  static constexpr const char* kTableKey = "points";  ///< a track may be a table of them
+
   std::string name;
   std::vector<GradeParams> grades;                    ///< empty = level
   std::vector<DipParams> dips;                        ///< overlapping dips add up
   std::vector<FrictionPatchParams> friction_patches;  ///< where two overlap, the later entry holds
+  std::vector<CurveParams> curves;                    ///< empty = straight
+  std::vector<HeightParams> heights;                  ///< in place of grades
+  std::vector<SpeedLimitParams> speed_limits;
+  std::vector<StationParams> stations;
+  /// A table of the route, in place of those of the lists above that it gives.
+  std::vector<RoutePointParams> points;
+  std::optional<double> begin_m,
+      end_m;  ///< where the route is known; else from the first of the points to the last
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -25,8 +38,24 @@ struct TrackParams {
     v.List("grades", grades);
     v.List("dips", dips);
     v.List("friction_patches", friction_patches);
+    v.List("curves", curves);
+    v.List("heights", heights);
+    v.List("speed_limits", speed_limits);
+    v.List("stations", stations);
+    v.List("points", points);
+    v.Number("begin_m", begin_m, kFinite);
+    v.Number("end_m", end_m, kFinite);
+    v.Check(!begin_m || !end_m || *begin_m < *end_m, "end_m", "must be greater than begin_m", {"begin_m"});
     for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, {rule.list});
   }
+
+  // What the lists or the points give, whichever it is, by rising position.
+  std::vector<StepValue> Grades() const;             ///< [-], uphill positive
+  std::vector<StepValue> Curvatures() const;         ///< [1/m], to the right positive; 0 behind each curve
+  std::vector<StepValue> SpeedLimits() const;        ///< [m/s]
+  std::vector<FrictionPatchParams> Patches() const;  ///< in the order in which they hold
+  std::vector<StationParams> Stations() const;       ///< by rising position
+  Stretch Extent() const;  ///< where the route is known; infinite where nothing says so
 
  private:
   /// A rule between the entries of a list that does not hold, as Check takes it.
@@ -36,7 +65,9 @@ struct TrackParams {
   };
 
   std::vector<BrokenRule> BrokenRules() const;
-  void JudgeGrades(std::vector<BrokenRule>& broken) const;
+  void JudgeOrder(std::vector<BrokenRule>& broken) const;
+  void JudgeHeights(std::vector<BrokenRule>& broken) const;
+  void JudgePoints(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;
   void JudgeRamps(std::vector<BrokenRule>& broken) const;
 };
@@ -54,16 +85,13 @@ class Track {
 
   bool has_dips = false;
   bool has_patches = false;
+  bool has_curves = false;
   /// Whether the rail is level but for grades and has the vehicles' own surface all along.
   bool IsPlain() const { return !has_dips && !has_patches; }
 
-  /// A constant grade [-], rise over run, and where it holds.
-  struct GradeStretch {
-    Stretch on;
-    double grade;
-  };
-  GradeStretch GradeFrom(double position_m) const;
-  void GradesAt(int count, const double* position_m, double* grade) const;
+  const Steps& grades() const { return grades_; }              ///< [-], rise over run
+  const Steps& curvatures() const { return curvatures_; }      ///< [1/m], to the right positive
+  const Steps& speed_limits() const { return speed_limits_; }  ///< [m/s], infinite where there is none
 
   /// The stretch around a position that no dip touches; an empty one within a dip.
   Stretch FlatFrom(double position_m) const;
@@ -90,14 +118,12 @@ class Track {
     int before, behind;
   };
 
-  void SetGrades(const std::vector<GradeParams>& grades);
   void SetDips();
   void SetPatches();
   AdhesionParams SurfaceOf(int patch, const AdhesionParams& vehicle) const;
   const AdhesionParams* ShapeOf(const SurfacePiece& piece, const AdhesionParams& vehicle) const;
 
-  Pieces grade_pieces_;
-  std::vector<double> grades_;  ///< [piece]
+  Steps grades_, curvatures_, speed_limits_;
   std::vector<DipParams> dips_;
   Pieces dip_pieces_;
   std::vector<int>
@@ -110,6 +136,12 @@ class Track {
 
 /// Grade [-], rise over run, uphill positive: the longitudinal force on a vehicle is -m g grade.
 double GradeAt(const Track& track, double position_m);
+
+/// Curvature 1/R [1/m] of the track, to the right positive as positions rise, 0 where it is straight.
+double CurvatureAt(const Track& track, double position_m);
+
+/// The lowest speed [m/s] that is allowed anywhere under a train; infinite where there is no limit.
+double SpeedLimitUnder(const Track& track, double rear_m, double front_m);
 
 /// Height and slope of the rail under a wheel, from the dips.
 RailHeight<double> RailHeightAt(const Track& track, double position_m);
@@ -145,16 +177,29 @@ bool AllOn(const Stretch& stretch, const T& position_m) {
   return AllOf((position_m >= T(stretch.from_m)) & (position_m < T(stretch.to_m)));
 }
 
+/// A quantity that is constant in steps, for one vehicle or for several side by side.
+template <class T>
+T ValueUnder(const Steps& steps, const T& position_m) {
+  const Steps::Held first = steps.From(FirstLane(position_m));
+  if (AllOn(first.on, position_m)) return T(first.value);
+  constexpr int kLanes = kLanesOf<T>;
+  double at[kLanes], value[kLanes];
+  Store(position_m, at);
+  steps.At(kLanes, at, value);
+  return Load<T>(value);
+}
+
 /// GradeAt for one vehicle or for several side by side.
 template <class T>
 T GradeUnder(const Track& track, const T& position_m) {
-  const Track::GradeStretch first = track.GradeFrom(FirstLane(position_m));
-  if (AllOn(first.on, position_m)) return T(first.grade);
-  constexpr int kLanes = kLanesOf<T>;
-  double at[kLanes], grade[kLanes];
-  Store(position_m, at);
-  track.GradesAt(kLanes, at, grade);
-  return Load<T>(grade);
+  return ValueUnder(track.grades(), position_m);
+}
+
+/// CurvatureAt for one vehicle or for several side by side.
+template <class T>
+T CurvatureUnder(const Track& track, const T& position_m) {
+  if (!track.has_curves) return T(0.0);
+  return ValueUnder(track.curvatures(), position_m);
 }
 
 /// RailHeightAt for one wheel, or for several side by side.
