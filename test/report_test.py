@@ -369,7 +369,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(2.0, float(recorded["simulated_s"]))
         self.assertEqual(2, page.text.count("<dd>yes</dd>"))
         self.assertIn("+0.0000 km/h at the last common instant", page.caption("speeds"))
-        self.assertEqual(["A wagon over the dip"], list(page.left_out))
+        self.assertEqual(["Wheels that slide", "A wagon over the dip"], list(page.left_out))
 
     def test_another_namespace(self):
         bag = rewritten(six_wagons() / "train.bag", self.here / "moved.bag",

@@ -139,6 +139,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
         "parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
   }
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
+  slides_publisher_ = node.advertise<train_brake_msgs::Slides>("slides", kQueue, true);
   scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
   scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
@@ -296,6 +297,10 @@ void MasterNode::Publish(const TrainRecord& record) {
   if (record.ledger) {
     train_results::Convert(record, ledger_);
     ledger_publisher_.publish(ledger_);
+  }
+  if (!record.slides.empty()) {
+    train_results::Convert(record, slides_);
+    slides_publisher_.publish(slides_);
   }
   live_.Show(record, PaceNow());
 }

@@ -50,6 +50,7 @@ class RankMessagesTest : public testing::Test {
     train_dynamics::ForEachRecordField(fill, record);
     train_dynamics::ForEachEnergy(fill, record);
     record.state_digest.assign(kCount, 1);
+    record.wheelset_work_j.assign(kCount * 2 * train_dynamics::kMostWheelsets, 1.0);
     reply.snapshot = Snapshot(first, 1.0);
     return reply;
   }
@@ -77,6 +78,25 @@ TEST_F(RankMessagesTest, AsksOfEachVehicleWhatItsModelComputes) {
   EXPECT_EQ(Complaint([](auto& r) { r.record.creepage[2] = kNaN; }, mixed), "");
   EXPECT_NE(Complaint([](auto& r) { r.record.creepage[1] = kNaN; }, mixed), "");
   EXPECT_NE(Complaint([](auto& r) { r.record.shoe_force_n[2] = kNaN; }, mixed), "");
+}
+
+TEST_F(RankMessagesTest, TakesSlidesOfItsVehiclesOnly) {
+  using train_dynamics::kSlideNumbers;
+  const auto slide_of = [](double vehicle) {
+    return [vehicle](auto& r) {
+      r.record.slides.assign(2 * kSlideNumbers, 1.0);
+      r.record.slides[0] = r.record.slides[kSlideNumbers] = vehicle;
+    };
+  };
+  EXPECT_EQ(Complaint(slide_of(5.0)), "");
+  ASSERT_EQ(reply_.slides.size(), 2u);
+  EXPECT_EQ(reply_.slides[1].vehicle, 5.0);
+  EXPECT_EQ(Complaint(slide_of(3.0)),
+            "/b (vehicles 4-6), exchange 4: replied a slide of vehicle 3, which it does not have");
+  EXPECT_NE(Complaint([](auto& r) { r.record.slides.assign(5, 4.0); }).find("replied slides that are none"),
+            std::string::npos);
+  EXPECT_NE(Complaint([](auto& r) { r.record.wheelset_work_j.clear(); }).find("wheelset_work_j"),
+            std::string::npos);
 }
 
 TEST_F(RankMessagesTest, RefusesArraysOfAnotherSize) {

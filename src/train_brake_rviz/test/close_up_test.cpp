@@ -112,5 +112,23 @@ TEST_F(CloseUpTest, ASlidingWheelIsSeenAtOnce) {
   EXPECT_NEAR(2.0 * vehicle_.wheelset.wheel_radius_m * close_up_.scale(), wheel.width(), 1e-9);
 }
 
+TEST_F(CloseUpTest, ALockedWheelIsWrittenOut) {
+  train_dynamics::WagonDetail detail;
+  detail.position = wagon_at_rest_;
+  const auto says = [this](const train_dynamics::WagonDetail& of) {
+    int locked = 0;
+    for (const auto& text : Draw(&of).texts()) locked += text.words == "LOCKED" ? 1 : 0;
+    return locked;
+  };
+  detail.output.creepage[2] = 0.99;
+  detail.velocity.x[kWheelset1 + 2] = 10.0;
+  EXPECT_EQ(1, says(detail));
+  detail.output.creepage[2] = 0.97;  // it turns a little
+  EXPECT_EQ(0, says(detail));
+  detail.output.creepage[2] = 0.99;
+  detail.velocity.x[kWheelset1 + 2] = 0.5;  // near standstill
+  EXPECT_EQ(0, says(detail));
+}
+
 }  // namespace
 }  // namespace train_brake_rviz

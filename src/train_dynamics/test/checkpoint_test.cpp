@@ -108,6 +108,10 @@ INSTANTIATE_TEST_SUITE_P(
               "train.consist[0].vehicle.wheel_slide_protection=threshold_3state", "train.consist[0].count=5",
               "duration_s=16"},
              0.6375},
+        // In the middle of slides.
+        Case{"Slides",
+             "low_adhesion_stop",
+             {"train.consist[0].vehicle=ore_wagon_empty", "train.consist[0].count=3", "duration_s=20"}},
         Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
         Case{"NewmarkWithoutInertia",
              "full_service",

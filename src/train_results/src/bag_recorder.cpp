@@ -13,7 +13,8 @@ BagRecorder::BagRecorder(const std::string& file, const train_dynamics::Scenario
       state_topic_(bag_.AddTopic<train_brake_msgs::TrainState>("/train/state")),
       forces_topic_(bag_.AddTopic<train_brake_msgs::InTrainForces>("/train/in_train_forces")),
       pressures_topic_(bag_.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures")),
-      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {
+      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")),
+      slides_topic_(bag_.AddTopic<train_brake_msgs::Slides>("/train/slides")) {
   constexpr bool kLatched = true;
   const int scenario_topic =
       bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
@@ -31,7 +32,7 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
     }
     return static_cast<int>(word);
   };
-  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
+  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_, &slides_topic_}) {
     *topic = below(bag_.topics(), "topic");
   }
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
@@ -44,7 +45,7 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
 Bytes BagRecorder::Checkpoint() {
   ByteWriter writer;
   writer.Add(bag_.Checkpoint());
-  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
+  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_, slides_topic_}) {
     writer.Add(static_cast<std::uint64_t>(topic));
   }
   writer.Add(std::uint64_t{wagon_topic_.size()});
@@ -67,6 +68,10 @@ void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
   if (record.ledger) {
     Convert(record, ledger_);
     bag_.Write(ledger_topic_, time, ledger_);
+  }
+  if (!record.slides.empty()) {
+    Convert(record, slides_);
+    bag_.Write(slides_topic_, time, slides_);
   }
   const int vehicles = static_cast<int>(record.vehicles.position_m.size());
   for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {

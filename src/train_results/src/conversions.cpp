@@ -3,6 +3,7 @@
 #include <train_brake_msgs/wagon_detail.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "strict_config/writer.h"
 
@@ -49,6 +50,19 @@ void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message
 void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
   Stamp(record, message);
   Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
+}
+
+void Convert(const TrainRecord& record, train_brake_msgs::Slides& message) {
+  Stamp(record, message);
+  train_dynamics::ForEachSlideField([](const char*, const char*, auto& numbers) { numbers.clear(); },
+                                    message);
+  for (const train_dynamics::SlideEvent& slide : record.slides) {
+    train_dynamics::ForEachSlideField(
+        [](const char*, const char*, const double& number, auto& numbers) {
+          numbers.push_back(static_cast<typename std::decay_t<decltype(numbers)>::value_type>(number));
+        },
+        slide, message);
+  }
 }
 
 void Convert(const TrainRecord& record, train_brake_msgs::EnergyLedger& message) {

@@ -259,6 +259,14 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::E
                        }));
 }
 
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::Slides& repeated) {
+  return CompareFields(
+      recorded, repeated, OfArrays([&](std::size_t i) {
+        const int vehicle = static_cast<int>(repeated.vehicle[i]);
+        return Owner{vehicle, fmt::format("slide of vehicle {}, wheelset {}", vehicle, repeated.wheelset[i])};
+      }));
+}
+
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::WagonState& repeated) {
   const int number = static_cast<int>(repeated.vehicle);
   const std::string wagon = "vehicle " + std::to_string(number);

@@ -70,6 +70,7 @@ RecordedRun::RecordedRun(const std::string& file, const std::string& train)
       if (IsOf<train_brake_msgs::InTrainForces>(topic)) place = &forces_;
       if (IsOf<train_brake_msgs::BrakePressures>(topic)) place = &pressures_;
       if (IsOf<train_brake_msgs::EnergyLedger>(topic)) place = &ledger_;
+      if (IsOf<train_brake_msgs::Slides>(topic)) place = &slides_;
     } else if (NamespaceOf(above) == train_ && IsOf<train_brake_msgs::WagonState>(topic)) {
       place = &wagons_[above.substr(train_.size() + 1)];
     }

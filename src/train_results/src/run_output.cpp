@@ -13,6 +13,7 @@
 
 #include "strict_config/writer.h"
 #include "train_results/plain_file.h"
+#include "train_results/slide_tables.h"
 
 namespace train_results {
 namespace {
@@ -32,7 +33,7 @@ bool IsResult(const std::string& name) {
   static const std::regex pattern(
       "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint|branched_from)(\\."
       "unfinished)?|"
-      "(pressure_table|train_history|pressures|couplers|vehicles|wagon_[0-9]+)\\.csv");
+      "(pressure_table|train_history|pressures|couplers|vehicles|slides|track_wear|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
 
@@ -215,7 +216,8 @@ void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
   });
 }
 
-void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json) {
+void RunOutput::Finish(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary,
+                       const std::string& summary_json) {
   if (folder_.empty()) return;
   std::exception_ptr error = error_;
   const auto attempt = [&error](const auto& step) {
@@ -228,6 +230,7 @@ void RunOutput::Finish(const train_dynamics::TrainMaster& master, const std::str
   if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
   if (bag_ != nullptr) attempt([&] { bag_->Close(); });
   attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
+  attempt([&] { WriteSlideTables(folder_, summary.slides()); });
   attempt([&] { WriteCouplerTable(folder_, master); });
   if (csv_ != nullptr) attempt([&] { csv_->Close(); });
   if (error != nullptr) std::rethrow_exception(error);

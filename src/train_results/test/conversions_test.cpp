@@ -43,8 +43,18 @@ TEST(Lists, HaveEveryArrayOfTheRecordOfARank) {
   train_dynamics::VehicleEnergy energy;
   train_dynamics::ForEachEnergy(
       [&](const train_dynamics::FieldInfo& field, const auto&) { names.insert(field.name); }, energy);
+  names.insert({"wheelset_work_j", "slides"});  // of wheelsets, whose number varies
   EXPECT_EQ(ArraysOf<train_brake_msgs::RankRecord>(), names)
       << "vehicle/vehicle_record.h and vehicle/work.h list what RankRecord.msg has";
+}
+
+TEST(Lists, HaveEveryArrayOfSlides) {
+  Names names;
+  train_dynamics::SlideEvent slide;
+  train_dynamics::ForEachSlideField([&](const char* name, const char*, double) { names.insert(name); },
+                                    slide);
+  for (const char* of_whole_numbers : {"vehicle", "wheelset", "is_over"}) names.erase(of_whole_numbers);
+  EXPECT_EQ(ArraysOf<train_brake_msgs::Slides>(), names) << "vehicle/slide_event.h lists what Slides.msg has";
 }
 
 TEST(Lists, HaveEveryArrayOfTheStateOfATrain) {
@@ -86,6 +96,21 @@ TEST(Conversions, TakeEveryQuantityOfARecordToTheState) {
         EXPECT_TRUE(std::equal(from.begin(), from.end(), to.begin(), to.end())) << field.name;
       },
       record.vehicles, state);
+}
+
+TEST(Conversions, TakeEverySlide) {
+  train_dynamics::TrainRecord record;
+  record.slides.resize(2);
+  record.slides[1].vehicle = 7.0;
+  record.slides[1].wheelset = 3.0;
+  record.slides[1].energy_j = 1.25e5;
+  train_brake_msgs::Slides message;
+  message.vehicle = {1, 2, 3, 4};  // of a message before
+  Convert(record, message);
+  ASSERT_EQ(message.vehicle.size(), 2u);
+  EXPECT_EQ(message.vehicle[1], 7u);
+  EXPECT_EQ(message.wheelset[1], 3u);
+  EXPECT_EQ(message.energy_j, (std::vector<double>{0.0, 1.25e5}));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ std::string TrainRun::Finish(double wall_s, const std::string& fault) {
   const std::string json = summary_.Json(master_, wall_s, fault.empty() ? fault_ : fault);
   if (output_ == nullptr) return json;
   try {
-    output_->Finish(master_, json);
+    output_->Finish(master_, summary_, json);
   } catch (const std::exception& e) {
     if (write_error_.empty()) write_error_ = e.what();
   }

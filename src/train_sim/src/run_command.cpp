@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "train_dynamics/config/load_scenario.h"
@@ -46,6 +49,34 @@ int Threads(int asked, const LoadedScenario& scenario) {
 
 namespace {
 
+/// The same run from a start that differs by a little, without any output. Empty if it is interrupted or breaks down.
+std::optional<train_dynamics::TwinRun> RunTwin(const LoadedScenario& scenario, const RunOptions& options) {
+  train_dynamics::ScenarioParams params = scenario.params;
+  params.initial_speed_kmh += kTwinOffset;
+  for (train_dynamics::ConsistGroupParams& group : params.train.consist) {
+    if (group.initial_speed_kmh) *group.initial_speed_kmh += kTwinOffset;
+  }
+  train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
+  train_run::TrainRun run(params, scenario.consist, vehicles, scenario.pressures);
+  train_run::RunHooks hooks;
+  hooks.ends = [] { return train_run::Interrupt() != 0; };
+  run.Go(hooks);
+  if (run.exit_code() != train_run::kSuccess) return std::nullopt;
+  return train_dynamics::TwinRun{kTwinOffset, run.master().in_train_forces().Extremes(),
+                                 run.summary().mean_distance_m(), run.summary().mean_speed_mps()};
+}
+
+void WarnOfResidual(const train_run::TrainRun& run) {
+  constexpr double kAim = 1e-6;
+  const double share = run.summary().ResidualShare(run.master());
+  if (std::abs(share) <= kAim) return;
+  fmt::print(stderr,
+             "warning: the energy ledger's residual is {:.2g} of the energy turned over, above {:.0e}: halve "
+             "dt_s and "
+             "exchange_interval_s and see what of the result stays\n",
+             share, kAim);
+}
+
 /// From time 0, or from a checkpoint, to the end.
 int Run(const LoadedScenario& scenario, const RunOptions& options,
         const train_dynamics::TrainCheckpoint* checkpoint, train_results::RunOutput& output) {
@@ -59,6 +90,11 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   hooks.ends = [] { return train_run::Interrupt() != 0; };
   run.Go(hooks);
   progress.Finish();
+  if (options.twin && run.exit_code() == train_run::kSuccess) {
+    if (std::optional<train_dynamics::TwinRun> twin = RunTwin(scenario, options))
+      run.SetTwin(std::move(*twin));
+  }
+  WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
   fmt::print("{}", json);
   const double end_s = run.master().time_s();

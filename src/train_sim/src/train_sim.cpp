@@ -77,7 +77,13 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 1024));
   run->add_flag("--csv", options.csv,
                 "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
+  run->add_flag("--twin", options.twin,
+                "run the train once more with its start speed changed by 1e-9 km/h: the summary tells to how "
+                "many newtons "
+                "the maxima are determined");
   run->callback([&] {
+    if (options.twin && !options.resume.empty())
+      throw CLI::ValidationError("--twin", "is of a run from its start, not of one that is resumed");
     if (options.scenario.empty() == options.resume.empty())
       throw CLI::ValidationError("SCENARIO", "give a scenario, or --resume DIR");
     if (options.csv && !options.resume.empty())

@@ -123,6 +123,7 @@ class Comparison {
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
   train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::Slides slides_;
   train_brake_msgs::WagonState wagon_;
 };
 
@@ -156,7 +157,7 @@ void Comparison::CheckWagons(const TrainRecord& record) {
 
 void Comparison::BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params) {
   std::vector<RecordedTopic*> topics = {&recorded_.state(), recorded_.forces(), recorded_.pressures(),
-                                        recorded_.ledger()};
+                                        recorded_.ledger(), recorded_.slides()};
   for (const int vehicle : params.detail_vehicles) {
     topics.push_back(recorded_.wagon(train_dynamics::VehicleName(vehicle - 1, vehicles_)));
   }
@@ -181,6 +182,10 @@ void Comparison::Observe(const TrainRecord& record) {
   Check(recorded_.ledger(), record, ledger_, [&](auto& message) {
     if (record.ledger) train_results::Convert(record, message);
     return record.ledger.has_value();
+  });
+  Check(recorded_.slides(), record, slides_, [&](auto& message) {
+    if (!record.slides.empty()) train_results::Convert(record, message);
+    return !record.slides.empty();
   });
   if (is_recorded_ && !Differs()) ++records_;
 }

@@ -144,6 +144,9 @@ void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
   train_dynamics::ForEachRecordField(
       [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; }, state, record);
   record.state_digest = state.state_digest;
+  record.wheelset_work_j = state.wheelset_work_j;
+  const auto* slides = reinterpret_cast<const double*>(state.slides.data());
+  record.slides.assign(slides, slides + state.slides.size() * train_dynamics::kSlideNumbers);
   record.details.resize(state.details.size());
   for (std::size_t i = 0; i < state.details.size(); ++i) {
     const train_dynamics::WagonDetail& detail = state.details[i];
@@ -251,6 +254,12 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   train_dynamics::CopyLoads(request, 0, run.rank.count, run.loads);
   const bool sound = run.vehicles.Advance(run.loads, 0, run.state);
   ++run.next_exchange;
+  if (request.record) {
+    run.state.slides.clear();
+    run.vehicles.TellSlides(request.ledger,
+                            run.scenario.exchange_interval_s * static_cast<double>(run.next_exchange),
+                            run.state.slides);
+  }
   run.has_replied = true;
 
   reply.ok = true;

@@ -106,12 +106,13 @@ class MasterNode {
   RecordTopic<train_brake_msgs::TrainState> state_topic_;
   RecordTopic<train_brake_msgs::InTrainForces> forces_topic_;
   RecordTopic<train_brake_msgs::BrakePressures> pressures_topic_;
-  ros::Publisher ledger_publisher_, scenario_publisher_, diagnostics_publisher_;
+  ros::Publisher ledger_publisher_, slides_publisher_, scenario_publisher_, diagnostics_publisher_;
   std::vector<ros::ServiceServer> services_;
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
   train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::Slides slides_;
   std::unique_ptr<train_node::RegistrationWatch> registration_;
 };
 

@@ -54,6 +54,12 @@ class Unpacker {
     CheckSize("state_digest", record.state_digest.size(), Count());
     std::copy(record.state_digest.begin(), record.state_digest.end(),
               reply.state_digest.begin() + rank_.first);
+    constexpr std::size_t kWork = 2 * train_dynamics::kMostWheelsets;
+    CheckSize("wheelset_work_j", record.wheelset_work_j.size(), kWork * Count());
+    if (!AllFinite(record.wheelset_work_j)) Fail("replied wheelset_work_j that are not finite");
+    std::copy(record.wheelset_work_j.begin(), record.wheelset_work_j.end(),
+              reply.wheelset_work_j.begin() + static_cast<std::ptrdiff_t>(kWork) * rank_.first);
+    Slides(record.slides, reply);
     auto from = record.details.begin();
     for (train_dynamics::WagonDetail& detail : reply.details) {
       if (detail.vehicle < rank_.first || detail.vehicle >= rank_.first + rank_.count) continue;
@@ -67,6 +73,20 @@ class Unpacker {
         if (AllFinite(values)) return;
         Fail(fmt::format("replied details of vehicle {} that are not finite", detail.vehicle + 1));
       });
+    }
+  }
+
+  /// @param numbers  of slides, one behind the other
+  void Slides(const std::vector<double>& numbers, ExchangeReply& reply) const {
+    using train_dynamics::kSlideNumbers;
+    if (numbers.size() % kSlideNumbers != 0 || !AllFinite(numbers)) Fail("replied slides that are none");
+    for (std::size_t at = 0; at < numbers.size(); at += kSlideNumbers) {
+      train_dynamics::SlideEvent slide;
+      std::copy_n(&numbers[at], kSlideNumbers, reinterpret_cast<double*>(&slide));
+      if (!(slide.vehicle > rank_.first && slide.vehicle <= rank_.first + rank_.count)) {
+        Fail(fmt::format("replied a slide of vehicle {}, which it does not have", slide.vehicle));
+      }
+      reply.slides.push_back(slide);
     }
   }
 
@@ -205,6 +225,7 @@ void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs
 void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
   const std::string when = ExchangeText(whole.exchange);
   reply.fault = {};
+  if (whole.record) reply.slides.clear();
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const train_brake_msgs::StepResponse& response = step[i].response;
     const Unpacker unpacker(ranks_[i], when);

@@ -35,6 +35,9 @@ std::uint32_t ReplyRoom(int vehicles) {
   train_dynamics::ResizeEnergies(count, record);
   record.state_digest.resize(count);
   record.details.resize(count);
+  record.wheelset_work_j.resize(count * 2 * train_dynamics::kMostWheelsets);
+  record.slides.resize(count * train_dynamics::kMostWheelsets * train_dynamics::kMostSlidesPerWheelset *
+                       train_dynamics::kSlideNumbers);
   train_dynamics::BlockSnapshot snapshot;
   snapshot.states.assign(count, train_dynamics::StateRow(train_dynamics::MostStateNumbers()));
   reply.snapshot = train_dynamics::Encode(snapshot);

@@ -71,6 +71,16 @@ def facts_of(run: Run) -> List[Fact]:
         facts.append(Fact("", "distance", way_m, f"{way_m:.0f} m", "" if run.has_all_records else "of the recorded part"))
     _extreme(facts, run, "max_tension_n", "largest tension", 1)
     _extreme(facts, run, "max_compression_n", "largest compression", -1)
+    twin = summary.get("twin")
+    if twin:
+        spread = max(twin["max_tension_spread_n"], twin["max_compression_spread_n"])
+        facts.append(Fact("twin", "maxima determined to", spread, f"{1e-3 * spread:.3g} kN",
+                          f"by a twin whose start differs by {twin['start_offset_kmh']:g} km/h"))
+    slides = summary.get("slides")
+    if slides and slides["slides"]:
+        locked = sum(w["locked_s"] > 0 for w in slides["wheelsets"])
+        facts.append(Fact("slides.slides", "slides of wheelsets", slides["slides"], f"{slides['slides']}",
+                          f"{len(slides['wheelsets'])} wheelset(s), {locked} locked, {slides['flat_risks']} with risk of a flat"))
     if "energy" in summary and summary["energy"]["initial_j"] > 0.0:
         share = summary["energy"]["residual_j"] / summary["energy"]["initial_j"]
         facts.append(Fact("energy.residual_j", "energy residual", summary["energy"]["residual_j"], minus(f"{share:+.1e}"),

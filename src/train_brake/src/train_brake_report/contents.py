@@ -3,7 +3,7 @@
 from typing import Callable, List, Tuple, Union
 
 from train_brake_report.figure import Figure, LeftOut
-from train_brake_report.figures import couplers, dip, energy, pressures, space_time, speeds, vehicle, wheel_forces
+from train_brake_report.figures import brake_table, couplers, dip, energy, pressures, space_time, speeds, vehicle, wheel_forces, wheel_slides
 from train_brake_report.group import Group
 
 Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out)
@@ -11,6 +11,7 @@ Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out
 OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
     ("Speed", speeds.draw),
     ("Cylinder pressures", pressures.draw),
+    ("Cylinder pressure and wave speed over the reduction", brake_table.draw),
     ("Shoe and wheel", wheel_forces.draw),
     ("Largest coupler forces along the train", couplers.draw_largest),
     ("Force of a coupler", couplers.draw_history),
@@ -18,6 +19,8 @@ OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
     ("Cylinder pressure, whole train", space_time.draw_pressure),
     ("Brake wave", space_time.draw_wave),
     ("Wheel slip, whole train", space_time.draw_slip),
+    ("Wheels that slide", wheel_slides.draw_slides),
+    ("Wear and brake force along the track", wheel_slides.draw_wear),
     ("Acceleration, whole train", space_time.draw_acceleration),
     ("Energy ledger", energy.draw),
     ("A wagon over the dip", dip.draw),

@@ -39,6 +39,8 @@ class Run:
                               "end of the bag is missing.")
         self.summary = summary if belong else None
         self.config_file = folder / "config.yaml" if belong and (folder / "config.yaml").exists() else None
+        self.slides_file = folder / "slides.csv" if belong and (folder / "slides.csv").exists() else None
+        self.track_wear_file = folder / "track_wear.csv" if belong and (folder / "track_wear.csv").exists() else None
         self.couplers_file = folder / "couplers.csv" if belong and (folder / "couplers.csv").exists() else None
         self.config_text = self.recording.scenario or (text_of(self.config_file) if self.config_file else "")
         self.config = parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, load_yaml) or None

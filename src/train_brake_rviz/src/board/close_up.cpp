@@ -6,6 +6,7 @@
 
 #include "train_brake_rviz/board/axis.h"
 #include "train_brake_rviz/board/layout.h"
+#include "train_dynamics/vehicle/slide_event.h"
 
 namespace train_brake_rviz {
 namespace {
@@ -20,6 +21,13 @@ constexpr double kRailUp = 10.0;                    // of the rail over the area
 constexpr double kLoadText = 3.3, kSlipText = 1.3;  // heights of the numbers over the area's bottom
 constexpr double kSliding = 0.1;                    // creepage from which a wheel counts as sliding
 constexpr double kUndergear = 0.62;  // height of a carbody's floor, of that of its centre of gravity
+
+/// Whether a wheelset is locked, as train_dynamics/vehicle/slide_event.h says it.
+bool IsLocked(const train_dynamics::WagonDetail& detail, int wheelset) {
+  const double speed = std::abs(detail.velocity.x[kWheelset1 + wheelset]);
+  return speed > train_dynamics::slide::kSlowest &&
+         std::abs(detail.output.creepage[wheelset]) >= 1.0 - train_dynamics::slide::kLocked;
+}
 
 double MeanOfWheelsets(const CloseUp::Bodies& position, int wheelsets) {
   const double* first = &position.x[kWheelset1];
@@ -89,7 +97,7 @@ void CloseUp::Draw(Drawing& drawing, const train_dynamics::Track& track, const S
   DrawBodies(drawing, position, sight.color);
   for (int i = 0; i < vehicle_.Wheelsets(); ++i) {
     const bool slides = sight.detail != nullptr && std::abs(sight.detail->output.creepage[i]) >= kSliding;
-    DrawWheelset(drawing, position, i, slides);
+    DrawWheelset(drawing, position, i, slides, sight.detail != nullptr && IsLocked(*sight.detail, i));
   }
   DrawCouplerForce(drawing, position, 1.0, sight.front_force_n);
   DrawCouplerForce(drawing, position, -1.0, sight.rear_force_n);
@@ -171,14 +179,15 @@ void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) c
   }
 }
 
-void CloseUp::DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides) const {
+void CloseUp::DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides,
+                           bool locked) const {
   const int body = kWheelset1 + wheelset;
   const double radius = vehicle_.wheelset.wheel_radius_m;
   const Point axle = PlaceOf(position, body, 0.0, 0.0);
   drawing.On(Layer::kFill);
   drawing.Disc(axle, scale_ * radius, slides ? palette::kVermillion : palette::kDark);
   drawing.On(Layer::kLine);
-  drawing.Disc(axle, scale_ * 0.82 * radius, palette::kShade);
+  drawing.Disc(axle, scale_ * 0.82 * radius, locked ? palette::kVermillion : palette::kShade);
   drawing.On(Layer::kTop);  // over the bogie frame, which would hide that the wheel turns
   drawing.Line(PlaceOf(position, body, 0.0, -0.1 * radius), PlaceOf(position, body, 0.0, 0.8 * radius), 0.55,
                palette::kInk);
@@ -212,8 +221,10 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
 
     drawing.Write({contact.right, area_.bottom + kLoadText}, Align::kCentre, layout::kSmallText,
                   Kilonewtons(load));
+    const bool locked = IsLocked(detail, i);
     drawing.Write({contact.right, area_.bottom + kSlipText}, Align::kCentre, layout::kSmallText,
-                  Rounded(100.0 * detail.output.creepage[i], 2) + " %");
+                  locked ? "LOCKED" : Rounded(100.0 * detail.output.creepage[i], 2) + " %",
+                  locked ? palette::kVermillion : palette::kInk);
   }
 }
 

@@ -3,7 +3,9 @@
 namespace train_dynamics {
 
 VehicleRecords::VehicleRecords(int vehicles, const std::vector<int>& detailed)
-    : state_digest(vehicles), details(detailed.size()) {
+    : state_digest(vehicles),
+      details(detailed.size()),
+      wheelset_work_j(static_cast<std::size_t>(vehicles) * 2 * kMostWheelsets, 0.0) {
   ResizeRecord(vehicles, *this);
   for (size_t i = 0; i < detailed.size(); ++i) details[i].vehicle = detailed[i];
 }

@@ -73,6 +73,7 @@ void RunSummary::Observe(const TrainRecord& record) {
   tail_speed_mps_ = speed.back();
   mean_distance_m_ = record.mean_position_m - record.at_time_zero.mean_position_m;
   JudgeMotion(record);
+  slides_.Observe(record);
   if (record.ledger) ledger_ = *record.ledger;
   state_digest_ = record.state_digest;
 }
@@ -114,13 +115,70 @@ std::string RunSummary::Stops() const {
   return list;
 }
 
+std::string RunSummary::Twin(const TrainMaster& master) const {
+  if (!twin_) return "null";
+  const std::vector<ForceExtremes> own = master.in_train_forces().Extremes();
+  double tension_n = 0.0, compression_n = 0.0;
+  for (std::size_t c = 0; c < std::min(own.size(), twin_->extremes.size()); ++c) {
+    tension_n = std::max(tension_n, std::abs(own[c].tension_n - twin_->extremes[c].tension_n));
+    compression_n =
+        std::max(compression_n, std::abs(own[c].compression_n - twin_->extremes[c].compression_n));
+  }
+  return "{\"start_offset_kmh\": " + Number(twin_->start_offset_kmh) +
+         ", \"max_tension_spread_n\": " + Number(tension_n) +
+         ", \"max_compression_spread_n\": " + Number(compression_n) +
+         ", \"distance_spread_m\": " + Number(std::abs(mean_distance_m_ - twin_->distance_m)) +
+         ", \"final_speed_spread_kmh\": " +
+         Number(kKmhPerMps * std::abs(mean_speed_mps_ - twin_->mean_speed_mps)) + "}";
+}
+
+double RunSummary::ResidualShare(const TrainMaster& master) const {
+  const double initial_j = master.at_time_zero().stored_energy_j;
+  const double turned_over_j =
+      std::max({std::abs(ledger_.Dissipated()), std::abs(ledger_.Stored() - initial_j),
+                std::abs(ledger_.gravity_work_j) + std::abs(ledger_.traction_work_j)});
+  return turned_over_j > 0.0 ? ledger_.Residual(initial_j) / turned_over_j : 0.0;
+}
+
+std::string RunSummary::Slides() const {
+  int events = 0, flat_risks = 0;
+  double energy_j = 0.0;
+  std::string wheelsets;
+  for (const WheelsetSlides& of : slides_.Wheelsets()) {
+    events += of.slides;
+    flat_risks += of.FlatRisk() ? 1 : 0;
+    energy_j += of.energy_j;
+    wheelsets +=
+        std::string(wheelsets.empty() ? "" : ",") + "\n      {\"vehicle\": " + std::to_string(of.vehicle) +
+        ", \"wheelset\": " + std::to_string(of.wheelset) + ", \"slides\": " + std::to_string(of.slides) +
+        ", \"slid_s\": " + Number(of.slid_s) + ", \"slid_m\": " + Number(of.slid_m) +
+        ", \"locked_s\": " + Number(of.locked_s) + ", \"locked_m\": " + Number(of.locked_m) +
+        ", \"longest_lock_s\": " + Number(of.longest_lock_s) + ", \"energy_j\": " + Number(of.energy_j) +
+        ", \"largest_lock_j\": " + Number(of.largest_lock_j) +
+        ", \"largest_adhesion\": " + Number(of.largest_adhesion) +
+        ", \"flat_risk\": " + (of.FlatRisk() ? "true" : "false") + "}";
+  }
+  return "{\n    \"slides\": " + std::to_string(events) + ",\n    \"energy_j\": " + Number(energy_j) +
+         ",\n    \"flat_risks\": " + std::to_string(flat_risks) + ",\n    \"wheelsets\": [" + wheelsets +
+         "]\n  }";
+}
+
 std::vector<double> RunSummary::Memory() const {
+  const std::vector<double> slides = slides_.Memory();
   MemoryWriter writer;
+  writer(static_cast<double>(slides.size()));
+  for (const double number : slides) writer(number);
   ForEachMemory(*this, writer);
   return writer.Take();
 }
 
-void RunSummary::SetMemory(const std::vector<double>& memory) {
+void RunSummary::SetMemory(const std::vector<double>& whole) {
+  if (whole.empty() || !(whole[0] >= 0.0 && whole[0] < static_cast<double>(whole.size()))) {
+    throw SnapshotError("has too few numbers");
+  }
+  const auto after_slides = whole.begin() + 1 + static_cast<std::ptrdiff_t>(whole[0]);
+  slides_.SetMemory({whole.begin() + 1, after_slides});
+  const std::vector<double> memory(after_slides, whole.end());
   constexpr std::size_t kHead = 2, kStop = 3;  // numbers
   stops_.assign(memory.size() > kHead ? (memory.size() - kHead) / kStop : 0, {kNone, kNone, kNone});
   MemoryReader reader(memory);
@@ -160,7 +218,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::compression_n,
                   &ForceExtremes::compression_time_s)
        << ",\n  \"partings\": [" << Partings(master.in_train_forces().Partings())
-       << "],\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
+       << "],\n  \"twin\": " << Twin(master) << ",\n  \"slides\": " << Slides()
+       << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_j) << ",\n    \"final_j\": " << Number(ledger_.Stored())
        << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j)
        << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
@@ -170,7 +229,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
     separator = ",";
   }
   json << "\n    },\n    \"residual_j\": " << Number(ledger_.Residual(initial_j))
-       << "\n  },\n  \"state_digest\": \"" << digest << "\"\n}\n";
+       << ",\n    \"residual_share\": " << Number(ResidualShare(master)) << "\n  },\n  \"state_digest\": \""
+       << digest << "\"\n}\n";
   return json.str();
 }
 

@@ -245,6 +245,37 @@ void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const
   }
 }
 
+namespace {
+
+/// Warns of groups of LTD vehicles whose brake asks for more than the rail gives somewhere.
+void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
+  if (!scenario.brake || scenario.brake->kind != BrakeSystemKind::kEmpirical ||
+      !scenario.pressure_table.empty())
+    return;
+  const double pressure_pa = 1e3 * scenario.brake->empirical.emergency.cylinder_pressure_kpa;
+  const Stretch reach = ReachOf(scenario);
+  for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    if (scenario.ModelOfGroup(i) == VehicleModel::kTwoD) continue;
+    const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
+    double least = vehicle.wheel_rail.adhesion.friction_coefficient;
+    for (const FrictionPatchParams& patch : scenario.track.friction_patches) {
+      if (patch.from_m >= reach.to_m || patch.to_m <= reach.from_m) continue;
+      least = std::min(least,
+                       patch.adhesion ? patch.adhesion->friction_coefficient : *patch.friction_coefficient);
+    }
+    const double asked = ShoeForce(vehicle.brake_rigging, pressure_pa, 0.0) / vehicle.Weight();
+    if (asked <= least) continue;
+    const std::string key = "train.consist" + Index(i) + ".vehicle";
+    warnings.push_back({key, "the brake of " + key + " asks in an emergency for up to " + Short(asked) +
+                                 " of its weight where the rail gives " + Short(least) +
+                                 (scenario.adhesion_limit
+                                      ? ": adhesion_limit holds the wheel-rail force of its ltd model to that"
+                                      : ", and its ltd model applies all of it: adhesion_limit is false")});
+  }
+}
+
+}  // namespace
+
 std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   std::vector<Warning> warnings;
   const TrainParams& train = scenario.train;
@@ -287,7 +318,8 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                                    Counted(entries) + ")"});
     };
     leaves_out("track.dips", scenario.track.dips.size());
-    leaves_out("track.friction_patches", scenario.track.friction_patches.size());
+    if (!scenario.adhesion_limit)
+      leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
   if (scenario.Uses(VehicleModel::kTwoD) && !train.consist.empty()) {
     const Stretch reach = ReachOf(scenario);
@@ -310,6 +342,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                                    ModelName(model) + " model, which has no details"});
     }
   }
+  if (!train.consist.empty()) WarnOfAdhesionLimit(scenario, warnings);
   if (scenario.brake && scenario.pressure_table.empty()) {
     const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands);
     warnings.insert(warnings.end(), of_brake.begin(), of_brake.end());

@@ -59,6 +59,10 @@ void ThreadedBlock::Report(int offset, bool with_energy, ExchangeReply& reply) c
   for (const Share& share : shares_) share.block->Report(offset + share.first, with_energy, reply);
 }
 
+void ThreadedBlock::TellSlides(bool ongoing, double time_s, std::vector<SlideEvent>& slides) {
+  for (const Share& share : shares_) share.block->TellSlides(ongoing, time_s, slides);
+}
+
 void ThreadedBlock::Save(StateRow* rows) const {
   for (const Share& share : shares_) share.block->Save(rows + share.first);
 }

@@ -104,6 +104,8 @@ void TrainMaster::OpenPipes() {
 void TrainMaster::ShowRecord() {
   TrainRecord& record = record_;
   std::swap(record.vehicles, static_cast<VehicleRecords&>(reply_));  // the next record fills all of it anew
+  std::swap(record.slides, reply_.slides);
+  reply_.slides.clear();
   const std::vector<double>& speed = record.vehicles.speed_mps;
   for (size_t i = 0; i < last_speed_mps_.size(); ++i) {
     record.acceleration_mps2[i] = (speed[i] - last_speed_mps_[i]) / scenario_.record_interval_s;

@@ -8,6 +8,7 @@
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/batch_protection.h"
+#include "train_dynamics/vehicle/slide_watch.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
 
 namespace train_dynamics {
@@ -57,6 +58,18 @@ void FillDetail(const VehicleBatch<Wagon>& batch, int i, WagonDetail& detail) {
   detail.nest_compression_m = ElementsOf(batch.vehicle(), s.position).nest;
 }
 
+void FillWheelsetWork(const VehicleBatch<LtdVehicle>& /*batch*/, double* /*work_j*/) {}
+template <int kPerBogie>
+void FillWheelsetWork(const VehicleBatch<BogieVehicle<kPerBogie>>& batch, double* work_j) {
+  using Vehicle = BogieVehicle<kPerBogie>;
+  for (int i = 0; i < batch.size(); ++i, work_j += 2 * kMostWheelsets) {
+    for (int j = 0; j < Vehicle::kWheelsets; ++j) {
+      work_j[j] = batch.NumberOf(i, Vehicle::kFirstCreep + j);
+      work_j[kMostWheelsets + j] = batch.NumberOf(i, Vehicle::kFirstBrake + j);
+    }
+  }
+}
+
 std::string Describe(const char* what, double value, const char* unit) {
   return std::string(what) + " is " + std::to_string(value) + " " + unit;
 }
@@ -94,22 +107,28 @@ std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
 template <class Vehicle>
 class EqualVehicles : public VehicleBatch<Vehicle> {
  public:
+  using VehicleType = Vehicle;
   using VehicleBatch<Vehicle>::VehicleBatch;
 
   /// As VehicleBatch::Advance, in the exchange that is asked for.
   bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads,
-               const ReplyPlaces& reply) {
-    return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, request.record);
+               const ReplyPlaces& reply, bool with_output) {
+    return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, with_output);
   }
-  int Numbers() const { return VehicleBatch<Vehicle>::kNumbers; }
-  void Save(int i, double* numbers) const {
+  void TellSlides(int /*first*/, bool /*ongoing*/, double /*time_s*/, std::vector<SlideEvent>& /*slides*/) {}
+  void Save(int i, StateRow& row) const {
     const auto state = this->StateOf(i);
-    std::memcpy(numbers, &state, sizeof state);
+    row.resize(VehicleBatch<Vehicle>::kNumbers);
+    std::memcpy(row.data(), &state, sizeof state);
   }
-  void Restore(int i, const double* numbers) {
+  /// Takes numbers from the front of a row. @return how many; 0: the row has too few
+  std::size_t Restore(int i, const StateRow& row) {
+    constexpr std::size_t kOwn = VehicleBatch<Vehicle>::kNumbers;
+    if (row.size() < kOwn) return 0;
     auto state = this->StateOf(i);
-    std::memcpy(static_cast<void*>(&state), numbers, sizeof state);
+    std::memcpy(static_cast<void*>(&state), row.data(), sizeof state);
     this->SetState(i, state);
+    return kOwn;
   }
 };
 
@@ -123,13 +142,13 @@ class ProtectedVehicles : public EqualVehicles<Vehicle> {
   ProtectedVehicles(Base vehicles, double dt)
       : Base(std::move(vehicles)), protection_(*this->vehicle().params.wheel_slide_protection, dt, *this) {}
 
-  bool Advance(const Track& track, const ExchangeRequest& request, LoadPlaces loads,
-               const ReplyPlaces& reply) {
+  bool Advance(const Track& track, const ExchangeRequest& request, LoadPlaces loads, const ReplyPlaces& reply,
+               bool with_output) {
     const auto first = static_cast<long>(request.exchange) * request.steps;
     bool sound = true;
     for (int step = 0; step < request.steps; ++step) {
       loads.wheelset_pressure_pa = protection_.Step(first + step, *this, loads.cylinder_pressure_pa);
-      const bool shows = request.record && step + 1 == request.steps;
+      const bool shows = with_output && step + 1 == request.steps;
       sound &= VehicleBatch<Vehicle>::Advance(track, request.dt_s, 1, loads, reply, shows);
     }
     return sound;
@@ -148,25 +167,64 @@ class ProtectedVehicles : public EqualVehicles<Vehicle> {
   }
 
   static constexpr int kNumbers = Base::kNumbers + Protection::kNumbers;
-  int Numbers() const { return kNumbers; }
-  void Save(int i, double* numbers) const {
-    Base::Save(i, numbers);
-    std::memcpy(numbers + Base::kNumbers, &protection_.StateOf(i), sizeof(typename Protection::State));
+  void Save(int i, StateRow& row) const {
+    Base::Save(i, row);
+    row.resize(kNumbers);
+    std::memcpy(row.data() + Base::kNumbers, &protection_.StateOf(i), sizeof(typename Protection::State));
   }
-  void Restore(int i, const double* numbers) {
-    Base::Restore(i, numbers);
+  std::size_t Restore(int i, const StateRow& row) {
+    if (row.size() < kNumbers || Base::Restore(i, row) == 0) return 0;
     typename Protection::State state;
-    std::memcpy(static_cast<void*>(&state), numbers + Base::kNumbers, sizeof state);
+    std::memcpy(static_cast<void*>(&state), row.data() + Base::kNumbers, sizeof state);
     protection_.SetState(i, state);
+    return kNumbers;
   }
 
  private:
   Protection protection_;
 };
 
+/// Equal vehicles of the 2D model, whose slides are followed.
+template <class Vehicles>
+class WatchedVehicles : public Vehicles {
+  using Watch = SlideWatch<typename Vehicles::VehicleType>;
+
+ public:
+  template <class... Arguments>
+  explicit WatchedVehicles(Arguments&&... arguments)
+      : Vehicles(std::forward<Arguments>(arguments)...), watch_(this->size()) {}
+
+  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads,
+               const ReplyPlaces& reply, bool with_output) {
+    const bool sound = Vehicles::Advance(track, request, loads, reply, with_output || watch_.watching());
+    const double interval_s = request.steps * request.dt_s;
+    watch_.Follow(interval_s * static_cast<double>(request.exchange + 1), interval_s, *this);
+    return sound;
+  }
+  void TellSlides(int first, bool ongoing, double time_s, std::vector<SlideEvent>& slides) {
+    watch_.Tell(first, ongoing, time_s, *this, slides);
+  }
+
+  static constexpr int kNumbers = Vehicles::kNumbers + Watch::kMostNumbers();
+  void Save(int i, StateRow& row) const {
+    Vehicles::Save(i, row);
+    watch_.Save(i, row);
+  }
+  std::size_t Restore(int i, const StateRow& row) {
+    const std::size_t own = Vehicles::Restore(i, row);
+    if (own == 0 || !watch_.Restore(i, row.data() + own, row.size() - own)) return 0;
+    return row.size();
+  }
+
+ private:
+  Watch watch_;
+};
+
 /// A model over lanes is one more alternative here.
-using Batch = std::variant<EqualVehicles<Wagon>, EqualVehicles<SixAxleVehicle>, EqualVehicles<LtdVehicle>,
-                           ProtectedVehicles<Wagon>, ProtectedVehicles<SixAxleVehicle>>;
+using Batch =
+    std::variant<WatchedVehicles<EqualVehicles<Wagon>>, WatchedVehicles<EqualVehicles<SixAxleVehicle>>,
+                 EqualVehicles<LtdVehicle>, WatchedVehicles<ProtectedVehicles<Wagon>>,
+                 WatchedVehicles<ProtectedVehicles<SixAxleVehicle>>>;
 
 /// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
@@ -186,12 +244,16 @@ Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioP
   if (model == VehicleModel::kTwoD) {
     return WithBogieVehicle(params, [&](const auto& vehicle) -> Batch {
       auto vehicles = MakeBatch(vehicle, speed_mps, centre_m);
-      if (!params.wheel_slide_protection) return vehicles;
-      return ProtectedVehicles(std::move(vehicles), scenario.dt_s);
+      using Vehicle = std::decay_t<decltype(vehicle)>;
+      if (!params.wheel_slide_protection) {
+        return WatchedVehicles<EqualVehicles<Vehicle>>(std::move(vehicles));
+      }
+      return WatchedVehicles<ProtectedVehicles<Vehicle>>(std::move(vehicles), scenario.dt_s);
     });
   }
   const bool with_inertia = model == VehicleModel::kLtd;
-  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator), speed_mps, centre_m);
+  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator, scenario.adhesion_limit), speed_mps,
+                   centre_m);
 }
 
 /// Vehicles of this program's own models, in one batch for each run of equal vehicles.
@@ -219,7 +281,7 @@ class BatchedBlock : public VehicleBlock {
       sound &= std::visit(
           [&](auto& batch) {
             return batch.Advance(track_, request, PlacesOf(request, at),
-                                 PlacesOf(static_cast<ReplyArrays&>(reply), at));
+                                 PlacesOf(static_cast<ReplyArrays&>(reply), at), request.record);
           },
           run.batch);
     }
@@ -235,6 +297,7 @@ class BatchedBlock : public VehicleBlock {
             batch.Record(PlacesOf(static_cast<ReplyArrays&>(reply), at),
                          PlacesOf(static_cast<RecordArrays&>(reply), at));
             batch.Digests(&reply.state_digest[at]);
+            FillWheelsetWork(batch, &reply.wheelset_work_j[at * 2 * kMostWheelsets]);
             for (int i = 0; with_energy && i < batch.size(); ++i) {
               reply.energy[at + i] = EnergyOf(batch.vehicle(), track_, batch.StateOf(i));
             }
@@ -247,13 +310,18 @@ class BatchedBlock : public VehicleBlock {
     }
   }
 
+  void TellSlides(bool ongoing, double time_s, std::vector<SlideEvent>& slides) override {
+    for (Run& run : runs_) {
+      std::visit([&](auto& batch) { batch.TellSlides(run.begin + 1, ongoing, time_s, slides); }, run.batch);
+    }
+  }
+
   void Save(StateRow* rows) const override {
     for (const Run& run : runs_) {
       std::visit(
           [&](const auto& batch) {
             for (int i = 0; i < batch.size(); ++i, ++rows) {
-              rows->resize(batch.Numbers());
-              batch.Save(i, rows->data());
+              batch.Save(i, *rows);
             }
           },
           run.batch);
@@ -265,8 +333,10 @@ class BatchedBlock : public VehicleBlock {
       std::visit(
           [&](auto& batch) {
             for (int i = 0; i < batch.size(); ++i, ++rows) {
-              CheckNumbers(run, i, batch.Numbers(), rows->size());
-              batch.Restore(i, rows->data());
+              if (batch.Restore(i, *rows) == rows->size() && !rows->empty()) continue;
+              throw SnapshotError("has " + std::to_string(rows->size()) + " numbers of vehicle " +
+                                  std::to_string(run.begin + i + 1) + ", but one of the " +
+                                  ModelName(run.model) + " model has, with its equipment, others");
             }
           },
           run.batch);
@@ -297,13 +367,6 @@ class BatchedBlock : public VehicleBlock {
     VehicleModel model;
     Batch batch;
   };
-
-  static void CheckNumbers(const Run& run, int i, std::size_t expected, std::size_t numbers) {
-    if (numbers == expected) return;
-    throw SnapshotError("has " + std::to_string(numbers) + " numbers of vehicle " +
-                        std::to_string(run.begin + i + 1) + ", but one of the " + ModelName(run.model) +
-                        " model has " + std::to_string(expected));
-  }
 
   Track track_;
   int first_;

@@ -4,13 +4,18 @@
 
 namespace train_dynamics {
 
-LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method)
+LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method,
+                       bool knows_adhesion_limit)
     : brake_rigging(params.brake_rigging),
       propulsion_resistance(params.propulsion_resistance),
       weight_n(params.Weight()),
-      inertia_kg(params.TotalMass() +
-                 (with_rotational_inertia ? EquivalentRotationalMass(params.wheelset, params.Wheelsets()) : 0.0)),
-      integrator(method) {
+      inertia_kg(params.TotalMass() + (with_rotational_inertia
+                                           ? EquivalentRotationalMass(params.wheelset, params.Wheelsets())
+                                           : 0.0)),
+      integrator(method),
+      adhesion_limit(knows_adhesion_limit),
+      adhesion(params.wheel_rail.adhesion),
+      limit_n(params.Weight() * inertia_kg / params.TotalMass()) {
   strict_config::Validate(params);
 }
 

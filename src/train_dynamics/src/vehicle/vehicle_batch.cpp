@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "kernels/lane_laws.h"
 #include "train_dynamics/numeric/digest.h"
@@ -175,11 +177,46 @@ typename VehicleBatch<Vehicle>::State VehicleBatch<Vehicle>::StateOf(int i) cons
 }
 
 template <class Vehicle>
-double VehicleBatch<Vehicle>::NumberOf(int i, int field) const {
+template <class Struct>
+double VehicleBatch<Vehicle>::Number(const Bytes& packed, int i, int field) const {
   const std::size_t lanes = kernels_.lanes, pack = i / lanes, lane = i % lanes;
   double number;
-  std::memcpy(&number, &states_[pack * lanes * sizeof(State) + (field * lanes + lane) * kDouble], kDouble);
+  std::memcpy(&number, &packed[pack * lanes * sizeof(Struct) + (field * lanes + lane) * kDouble], kDouble);
   return number;
+}
+
+template <class Vehicle>
+double VehicleBatch<Vehicle>::NumberOf(int i, int field) const {
+  return Number<State>(states_, i, field);
+}
+
+template <class Vehicle>
+double VehicleBatch<Vehicle>::OutputNumberOf(int i, int field) const {
+  return Number<Output>(outputs_, i, field);
+}
+
+template <class Vehicle>
+bool VehicleBatch<Vehicle>::AnySlip(double share, double slowest_mps) const {
+  if constexpr (std::is_same_v<Vehicle, LtdVehicle>) {
+    return false;
+  } else {
+    const int lanes = kernels_.lanes;
+    const double radius_m = vehicle_.rolling.radius_m;
+    bool any = false;
+    for (int pack = 0; pack < packs_; ++pack) {
+      const auto* state =
+          reinterpret_cast<const double*>(&states_[static_cast<std::size_t>(pack) * lanes * sizeof(State)]);
+      for (int wheelset = 0; wheelset < Vehicle::kWheelsets; ++wheelset) {
+        const double* speed = state + (Vehicle::kFirstSpeed + wheelset) * lanes;
+        const double* spin = state + (Vehicle::kFirstSpin + wheelset) * lanes;
+        for (int lane = 0; lane < lanes; ++lane) {
+          const double size = std::abs(speed[lane]), slip = std::abs(speed[lane] - radius_m * spin[lane]);
+          any |= (slip > share * size) & (slip > share * slowest_mps);
+        }
+      }
+    }
+    return any;
+  }
 }
 
 template <class Vehicle>

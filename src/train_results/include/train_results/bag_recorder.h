@@ -11,7 +11,7 @@ namespace train_results {
 /// Writes every record of a run into a bag, under the topics on which ltd_master publishes:
 ///
 ///   /train/state  /train/in_train_forces  /train/brake_pressures  /train/energy_ledger
-///   /train/wagon_NNN/state  /train/scenario
+///   /train/slides  /train/wagon_NNN/state  /train/scenario
 class BagRecorder {
  public:
   /// @throws std::system_error if the file cannot be made
@@ -32,12 +32,13 @@ class BagRecorder {
   int WagonTopic(int vehicle, int vehicles);
 
   BagWriter bag_;
-  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
+  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0, slides_topic_ = 0;
   std::map<int, int> wagon_topic_;  ///< by vehicle
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
   train_brake_msgs::BrakePressures pressures_;
   train_brake_msgs::EnergyLedger ledger_;
+  train_brake_msgs::Slides slides_;
   train_brake_msgs::WagonState wagon_;
 };
 

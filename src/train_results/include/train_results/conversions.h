@@ -4,6 +4,7 @@
 #include <train_brake_msgs/BrakePressures.h>
 #include <train_brake_msgs/EnergyLedger.h>
 #include <train_brake_msgs/InTrainForces.h>
+#include <train_brake_msgs/Slides.h>
 #include <train_brake_msgs/TrainState.h>
 #include <train_brake_msgs/WagonState.h>
 
@@ -16,6 +17,7 @@ namespace train_results {
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainState& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::InTrainForces& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::BrakePressures& message);
+void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::Slides& message);
 /// Of a record with a ledger.
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::EnergyLedger& message);
 

@@ -3,6 +3,7 @@
 #include <train_brake_msgs/BrakePressures.h>
 #include <train_brake_msgs/EnergyLedger.h>
 #include <train_brake_msgs/InTrainForces.h>
+#include <train_brake_msgs/Slides.h>
 #include <train_brake_msgs/TrainState.h>
 #include <train_brake_msgs/WagonState.h>
 
@@ -36,6 +37,7 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::T
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::InTrainForces& repeated);
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::BrakePressures& repeated);
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::EnergyLedger& repeated);
+std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::Slides& repeated);
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::WagonState& repeated);
 
 }  // namespace train_results

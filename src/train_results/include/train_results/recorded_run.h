@@ -51,13 +51,14 @@ class RecordedRun {
   RecordedTopic* forces() { return forces_.get(); }
   RecordedTopic* pressures() { return pressures_.get(); }
   RecordedTopic* ledger() { return ledger_.get(); }
+  RecordedTopic* slides() { return slides_.get(); }
   /// @param name  "wagon_100"
   RecordedTopic* wagon(const std::string& name);
 
  private:
   BagFile bag_;
   std::string train_;
-  std::unique_ptr<RecordedTopic> state_, forces_, pressures_, ledger_;
+  std::unique_ptr<RecordedTopic> state_, forces_, pressures_, ledger_, slides_;
   std::map<std::string, std::unique_ptr<RecordedTopic>> wagons_;  ///< by name
 };
 

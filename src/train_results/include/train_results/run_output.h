@@ -42,6 +42,7 @@ struct OutputOptions {
 ///   branched_from where a branch left another run (a checkpoint, for verify)
 ///   checkpoint    now and then, and at the end: where the run can be resumed
 ///   couplers.csv  at the end: the largest forces of every connection, of all exchanges
+///   slides.csv, track_wear.csv  at the end: see slide_tables.h
 ///   summary.json  at the end; its absence tells that the run was cut off
 class RunOutput {
  public:
@@ -70,7 +71,8 @@ class RunOutput {
   void KeepCheckpoint(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary);
 
   /// Completes all files that can be. @throws std::exception if one could not be written
-  void Finish(const train_dynamics::TrainMaster& master, const std::string& summary_json);
+  void Finish(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary,
+              const std::string& summary_json);
 
  private:
   void StartThread();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/train/run_summary.h"
@@ -59,6 +60,9 @@ class TrainRun {
   std::string Finish(double wall_s, const std::string& fault = "");
 
   const train_dynamics::TrainMaster& master() const { return master_; }
+  const train_dynamics::RunSummary& summary() const { return summary_; }
+  /// See RunSummary::SetTwin.
+  void SetTwin(train_dynamics::TwinRun twin) { summary_.SetTwin(std::move(twin)); }
   /// When it begins [s]: later than 0 if it goes on from a checkpoint.
   double start_s() const;
   /// Whether Go has reached an interruption, at which it goes on to a record.

@@ -8,6 +8,8 @@
 
 namespace train_sim {
 
+inline constexpr double kTwinOffset = 1e-9;  ///< [km/h]
+
 struct RunOptions {
   std::string scenario;
   std::string model;   ///< empty: the scenario's
@@ -18,6 +20,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: one per core for the 2D model, one for LTD
   bool csv = false;
+  bool twin = false;  ///< run a twin whose start differs by kTwinOffset, too, and tell how far it comes apart
 };
 
 /// As many as asked for, if any, else one per core; but no more than are useful.

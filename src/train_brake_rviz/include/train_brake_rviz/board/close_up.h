@@ -57,7 +57,7 @@ class CloseUp {
  private:
   void DrawRail(Drawing& drawing, const train_dynamics::Track& track, double centre_m) const;
   void DrawBodies(Drawing& drawing, const Bodies& position, Color body) const;
-  void DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides) const;
+  void DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides, bool locked) const;
   void DrawContactForces(Drawing& drawing, const train_dynamics::WagonDetail& detail) const;
   void DrawCouplerForce(Drawing& drawing, const Bodies& position, double end, double force_n) const;
 

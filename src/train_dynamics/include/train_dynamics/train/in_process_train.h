@@ -9,7 +9,9 @@ class InProcessTransport : public Transport {
  public:
   /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
   InProcessTransport(const ScenarioParams& scenario, const Consist& consist, int threads)
-      : count_(consist.vehicles()), vehicles_(scenario, consist, 0, count_, threads) {}
+      : count_(consist.vehicles()),
+        interval_s_(scenario.exchange_interval_s),
+        vehicles_(scenario, consist, 0, count_, threads) {}
 
   void Start(ExchangeReply& reply) override;
   void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot, ExchangeReply& reply) override;
@@ -17,6 +19,7 @@ class InProcessTransport : public Transport {
 
  private:
   int count_;
+  double interval_s_;
   ThreadedBlock vehicles_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/snapshot.h"
+#include "train_dynamics/vehicle/slide_event.h"
 #include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
 #include "train_dynamics/vehicle/wagon.h"
@@ -56,6 +57,8 @@ struct VehicleFault {
 struct VehicleRecords : RecordArrays {
   std::vector<std::uint64_t> state_digest;  ///< [vehicle]
   std::vector<WagonDetail> details;         ///< whoever has one of these vehicles fills its entry
+  /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none
+  std::vector<double> wheelset_work_j;
 
   VehicleRecords() = default;
   /// @param detailed  indices of the vehicles to be recorded in full detail
@@ -67,6 +70,7 @@ struct ExchangeReply : ReplyArrays, VehicleRecords {
   VehicleFault fault;                 ///< the first in the order of the vehicles
   std::vector<VehicleEnergy> energy;  ///< with a ledger
   std::vector<StateRow> snapshot;     ///< see VehicleBlock::Save
+  std::vector<SlideEvent> slides;     ///< with a record: see VehicleBlock::TellSlides
 
   /// @param detailed  indices of the vehicles to be recorded in full detail
   ExchangeReply(int vehicles, const std::vector<int>& detailed);

@@ -1,17 +1,27 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "train_dynamics/train/slide_results.h"
 #include "train_dynamics/train/train_master.h"
 
 namespace train_dynamics {
 
+/// What a run came to whose start differed by a little: to how many newtons the maxima of a run are determined.
+struct TwinRun {
+  double start_offset_kmh = 0.0;        ///< of every vehicle's speed
+  std::vector<ForceExtremes> extremes;  ///< [connection]
+  double distance_m = 0.0, mean_speed_mps = 0.0;
+};
+
 /// What a run came to. Collected from its records as they pass.
 class RunSummary {
  public:
-  explicit RunSummary(const ScenarioParams& scenario) : scenario_(scenario) {}
+  explicit RunSummary(const ScenarioParams& scenario) : scenario_(scenario), slides_(scenario) {}
 
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
@@ -19,6 +29,18 @@ class RunSummary {
   /// The summary as JSON text; keys carry their units, what does not exist is null.
   /// @param fault  why the run ended early; empty: it did not, or was interrupted
   std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
+
+  /// The summary shall tell how far this twin has come apart.
+  void SetTwin(TwinRun twin) { twin_ = std::move(twin); }
+
+  /// The ledger's residual over the energy turned over: dissipated, or put in or out of store, or worked by gravity and
+  /// traction, whichever is most [-]. 0 where nothing was turned over.
+  double ResidualShare(const TrainMaster& master) const;
+  double mean_speed_mps() const { return mean_speed_mps_; }
+  double mean_distance_m() const { return mean_distance_m_; }
+
+  /// The slides of the run so far, and the work on its track.
+  const SlideResults& slides() const { return slides_; }
 
   /// What the summary of the whole run needs to know of its beginning.
   std::vector<double> Memory() const;
@@ -36,7 +58,9 @@ class RunSummary {
   double Forward() const;         ///< 1 or -1: the direction of the start
   double BehindFurthest() const;  ///< [m] by how far the train has come back from its furthest place
   bool RolledBack() const;
-  std::string Stops() const;  ///< as JSON objects
+  std::string Stops() const;                          ///< as JSON objects
+  std::string Slides() const;                         ///< as a JSON object
+  std::string Twin(const TrainMaster& master) const;  ///< as a JSON object, or null
 
   /// A time at which the train came to a stand.
   struct Stop {
@@ -46,6 +70,8 @@ class RunSummary {
   bool Stands() const { return !stops_.empty() && !(stops_.back().until_s == stops_.back().until_s); }
 
   const ScenarioParams& scenario_;
+  SlideResults slides_;
+  std::optional<TwinRun> twin_;
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
   int vehicles_ = 0;

@@ -34,6 +34,7 @@ struct ScenarioParams {
   double record_interval_s = 0.01;     ///< a multiple of exchange_interval_s
   double ledger_interval_s = 1.0;      ///< of the energy ledger; a multiple of record_interval_s
   LtdIntegrator integrator = LtdIntegrator::kLeapfrog;
+  bool adhesion_limit = true;  ///< of LTD vehicles: the rail gives at most mu0 W (2D vehicles always know)
   std::vector<int> detail_vehicles;  ///< recorded in full detail; from 1, or from -1 for the last
 
   template <class Visitor>
@@ -60,6 +61,7 @@ struct ScenarioParams {
     v.Number("ledger_interval_s", ledger_interval_s, kPositive);
     v.Choice("integrator", integrator,
              {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}});
+    v.Flag("adhesion_limit", adhesion_limit);
     v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false});
     v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s",
             {"dt_s"});

@@ -27,6 +27,7 @@ class ThreadedBlock : public VehicleBlock {
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override;
   void Report(int offset, bool with_energy, ExchangeReply& reply) const override;
+  void TellSlides(bool ongoing, double time_s, std::vector<SlideEvent>& slides) override;
   void Save(StateRow* rows) const override;
   void Restore(const StateRow* rows) override;
   VehicleFault FindFault() const override;

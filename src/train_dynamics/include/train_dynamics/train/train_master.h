@@ -21,6 +21,8 @@ struct TrainRecord {
   double mean_speed_mps = 0.0;   ///< of the vehicles' momentum
   double mean_position_m = 0.0;  ///< of the vehicles' masses
   VehicleRecords vehicles;
+  std::vector<SlideEvent>
+      slides;  ///< that have ended since the last record; with a ledger, those that go on, too
   std::vector<double> acceleration_mps2;     ///< [vehicle] mean over the record interval; NaN at time 0
   LoadArrays held;                           ///< the loads of the interval that ended
   std::vector<double> coupler_extension_m;   ///< [connection]

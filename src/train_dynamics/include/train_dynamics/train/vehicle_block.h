@@ -22,6 +22,10 @@ class VehicleBlock {
   /// Replies with the present state, as a record.
   virtual void Report(int offset, bool with_energy, ExchangeReply& reply) const = 0;
 
+  /// Appends the slides that have ended since it was asked last, in the order of the vehicles.
+  /// @param ongoing  those that go on, too, as they are at `time_s`
+  virtual void TellSlides(bool ongoing, double time_s, std::vector<SlideEvent>& slides) = 0;
+
   /// Writes the state of each vehicle to its row.
   virtual void Save(StateRow* rows) const = 0;
   /// Takes such rows back. @throws SnapshotError if they are not of these vehicles

@@ -52,7 +52,7 @@ struct LtdOutput {
 struct LtdVehicle {
   /// @throws std::invalid_argument when the parameters violate their rules
   LtdVehicle(const VehicleParams& params, bool with_rotational_inertia,
-             LtdIntegrator method = LtdIntegrator::kLeapfrog);
+             LtdIntegrator method = LtdIntegrator::kLeapfrog, bool knows_adhesion_limit = false);
 
   template <class T>
   using State = LtdState<T>;
@@ -66,12 +66,18 @@ struct LtdVehicle {
   double weight_n;    ///< m g
   double inertia_kg;  ///< m, or m + m_e
   LtdIntegrator integrator;
+  bool adhesion_limit;      ///< whether the rail limits the forces at the wheels
+  AdhesionParams adhesion;  ///< of the rail outside of patches
+  double limit_n;           ///< W M / m: mu0 times this is the most that the wheels' forces can be
 };
 
 /// One time step of paper Eq 1.
 ///
 ///   v*      = v + dt (F_front - F_rear + F_t - W grade(x)) / M
 ///   v_(n+1) = sgn(v*) max(|v*| - dt (F_ab + F_db + R + F_cr) / M, 0)
+///
+/// With `adhesion_limit` the forces at the wheels' rims, F_ab + F_db + R + F_cr together and F_t, are at most mu0(x) W M / m
+/// each, so that the rail gives at most mu0(x) W: nothing slides in this model, hence no falling friction.
 ///
 /// Brakes and resistance are set-valued at rest: the projection holds a standing vehicle exactly, on any
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
@@ -122,14 +128,23 @@ void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T
   s.x_m = s.x_m + drift * v0;
 
   const T gravity = -vehicle.weight_n * GradeUnder(track, s.origin_m + s.x_m);
-  const T shoes = ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
-  const T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
+  T shoes = ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
+  T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
+  T dynamic_brake = loads.dynamic_brake_n, curving = loads.curving_resistance_n, traction = loads.traction_n;
+  if (vehicle.adhesion_limit) {
+    const T most = vehicle.limit_n * RailSurfaceUnder(track, s.origin_m + s.x_m, vehicle.adhesion).friction;
+    const T share = Min(T(1.0), most / Max(T(1e-300), shoes + dynamic_brake + rolling + curving));
+    shoes = share * shoes;
+    rolling = share * rolling;
+    dynamic_brake = share * dynamic_brake;
+    curving = share * curving;
+    traction = Clamp(traction, -most, most);
+  }
   const T drag = AirDrag(vehicle.propulsion_resistance, vehicle.weight_n, v0);
-  const T retarding = shoes + loads.dynamic_brake_n + rolling + loads.curving_resistance_n + drag;
+  const T retarding = shoes + dynamic_brake + rolling + curving + drag;
 
   const double per_inertia = dt / vehicle.inertia_kg;
-  const T free =
-      v0 + per_inertia * (loads.front_coupler_n - loads.rear_coupler_n + loads.traction_n + gravity);
+  const T free = v0 + per_inertia * (loads.front_coupler_n - loads.rear_coupler_n + traction + gravity);
   const T v1 = CopySign(Max(T(0.0), Abs(free) - per_inertia * retarding), free);
   s.v_mps = v1;
   s.x_m = s.x_m + (dt - drift) * v1;
@@ -152,9 +167,9 @@ void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T
   book(kRollingResistance, rolling);
   book(kAirDrag, drag);
   const T zero = T(0.0);  // what few vehicles meet is booked where it is met
-  if (AnyOf(loads.traction_n != zero)) work.traction = work.traction + loads.traction_n * path;
-  if (AnyOf(loads.dynamic_brake_n != zero)) book(kDynamicBrake, loads.dynamic_brake_n);
-  if (AnyOf(loads.curving_resistance_n != zero)) book(kCurvingResistance, loads.curving_resistance_n);
+  if (AnyOf(traction != zero)) work.traction = work.traction + traction * path;
+  if (AnyOf(dynamic_brake != zero)) book(kDynamicBrake, dynamic_brake);
+  if (AnyOf(curving != zero)) book(kCurvingResistance, curving);
 }
 
 }  // namespace train_dynamics

@@ -41,6 +41,10 @@ class VehicleBatch {
   State StateOf(int i) const;
   /// One number of it.
   double NumberOf(int i, int field) const;
+  /// One number of OutputOf(i).
+  double OutputNumberOf(int i, int field) const;
+  /// Whether a wheelset of any vehicle slips by more than a share of its speed, that being at least `slowest_mps`.
+  bool AnySlip(double share, double slowest_mps) const;
   /// What vehicle i showed of the last step with output; NaN before.
   Output OutputOf(int i) const;
   void SetState(int i, const State& state);
@@ -52,6 +56,8 @@ class VehicleBatch {
 
   template <class Struct>
   Struct Unpack(const Bytes& packed, int i) const;
+  template <class Struct>
+  double Number(const Bytes& packed, int i, int field) const;
   template <class Struct>
   void Pack(const Struct& value, int i, Bytes& packed) const;
 

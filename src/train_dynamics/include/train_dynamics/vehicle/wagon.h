@@ -83,6 +83,9 @@ struct WagonState {
   BodyVector<T, kPerBogie> position;
   BodyVector<T, kPerBogie> velocity;
   VehicleWork<T> work;
+  /// By wheelset, both wheels, since the start [J]: lost in creep (their sum is the account of kWheelRailCreep); of the
+  /// longitudinal force on the rail, positive where it brakes.
+  std::array<T, kWheelsetsOf<kPerBogie>> creep_work{}, brake_work{};
 };
 
 static_assert(offsetof(WagonState<double>, position) == sizeof(double) &&
@@ -125,6 +128,13 @@ struct BogieVehicle {
   }();
   /// Of the state as an array of numbers: the carbody's speed, the first wheelset's rotation; the others' follow.
   static constexpr int kSpeed = 1 + 3 * kBodies + kCarbody, kFirstSpin = 1 + 5 * kBodies + kWheelset1;
+  /// Of the first wheelset: way, rotation [rad], speed; energy lost in creep, work on the rail.
+  static constexpr int kFirstWay = 1 + kWheelset1, kFirstTurn = 1 + 2 * kBodies + kWheelset1,
+                       kFirstSpeed = 1 + 3 * kBodies + kWheelset1,
+                       kFirstCreep = 1 + 6 * kBodies + sizeof(VehicleWork<double>) / sizeof(double),
+                       kFirstBrake = kFirstCreep + kWheelsets;
+  /// Of the output as an array of numbers: the first wheelset's creep force; normal forces come first of all.
+  static constexpr int kFirstCreepForce = 2 * kWheelsets;
 
   VehicleParams params;
   FrictionWedge wedge;  ///< without springs, hence without forces, where there are no wedges

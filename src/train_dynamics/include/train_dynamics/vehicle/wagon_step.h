@@ -233,8 +233,9 @@ struct WheelsetStep {
   ShoeForces<T, kPerBogie> shoes;
   /// The share of the retarding torque that acts, -1 ... 1; forward turning: positive.
   std::array<T, kWheelsetsOf<kPerBogie>> mobilised;
-  std::array<T, kWheelsetsOf<kPerBogie>> path;  ///< at the tread, of the rotation [m]
-  T creep{}, contact{};                         ///< energy lost in creep and in the contacts' dampers [J]
+  std::array<T, kWheelsetsOf<kPerBogie>> path;          ///< at the tread, of the rotation [m]
+  std::array<T, kWheelsetsOf<kPerBogie>> creep, brake;  ///< energy lost in creep; work on the rail [J]
+  T contact{};                                          ///< energy lost in the contacts' dampers [J]
 };
 
 /// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
@@ -305,7 +306,8 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
     const T lifted = 0.5 * dt * (v0.z[b] + v1.z[b]);
     step.path[i] = r * turned;
     step.mobilised[i] = out.brake_torque / Max(T(1e-300), rolling[i].brake_torque);
-    step.creep = step.creep + out.creep_force * (moved - step.path[i]);
+    step.brake[i] = out.creep_force * moved;
+    step.creep[i] = out.creep_force * (moved - step.path[i]);
     step.contact = step.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
@@ -405,7 +407,9 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
   };
-  book(kWheelRailCreep, wheelsets.creep);
+  T creep(0.0);
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) creep = creep + wheelsets.creep[i];
+  book(kWheelRailCreep, creep);
   book(kWheelRailNormal, wheelsets.contact);
   book(kAdaptorPads, pads);
   book(kFrictionWedges, wedges);
@@ -459,6 +463,10 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   dissipative.wedge = friction.wedge;
   BookWork<kAll>(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
   BookTorques<kAll>(w, outer, wheelsets, dt, v0, v1, s.work);
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    s.creep_work[i] = s.creep_work[i] + wheelsets.creep[i];
+    s.brake_work[i] = s.brake_work[i] + wheelsets.brake[i];
+  }
 }
 
 template <class T, int kPerBogie>

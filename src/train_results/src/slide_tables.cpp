@@ -1,0 +1,39 @@
+#include "train_results/slide_tables.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "train_results/plain_file.h"
+
+namespace train_results {
+
+void WriteSlideTables(const std::filesystem::path& folder, const train_dynamics::SlideResults& results) {
+  std::string table;
+  train_dynamics::SlideEvent head;
+  train_dynamics::ForEachSlideField(
+      [&table](const char* name, const char*, double) {
+        table += (table.empty() ? "" : ",") + std::string(name);
+      },
+      head);
+  for (const train_dynamics::SlideEvent& slide : results.Slides()) {
+    char separator = '\n';
+    train_dynamics::ForEachSlideField(
+        [&](const char*, const char*, double number) {
+          table += fmt::format("{}{:.9g}", separator, number);
+          separator = ',';
+        },
+        slide);
+  }
+  WriteFile(folder / "slides.csv", table + "\n");
+
+  const train_dynamics::TrackWork track = results.Track();
+  table = "from_m,to_m,creep_j,brake_j\n";
+  for (std::size_t i = 0; i < track.creep_j.size(); ++i) {
+    const long from_m = track.from_m + static_cast<long>(i);
+    table += fmt::format("{},{},{:.9g},{:.9g}\n", from_m, from_m + 1, track.creep_j[i], track.brake_j[i]);
+  }
+  WriteFile(folder / "track_wear.csv", table);
+}
+
+}  // namespace train_results
