@@ -13,8 +13,7 @@ BagRecorder::BagRecorder(const std::string& file, const train_dynamics::Scenario
       state_topic_(bag_.AddTopic<train_brake_msgs::TrainState>("/train/state")),
       forces_topic_(bag_.AddTopic<train_brake_msgs::InTrainForces>("/train/in_train_forces")),
       pressures_topic_(bag_.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures")),
-      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")),
-      slides_topic_(bag_.AddTopic<train_brake_msgs::Slides>("/train/slides")) {
+      ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {
   constexpr bool kLatched = true;
   const int scenario_topic =
       bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
@@ -32,9 +31,10 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
     }
     return static_cast<int>(word);
   };
-  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_, &slides_topic_}) {
+  for (int* topic : {&state_topic_, &forces_topic_, &pressures_topic_, &ledger_topic_}) {
     *topic = below(bag_.topics(), "topic");
   }
+  slides_topic_ = below(bag_.topics() + 1, "topic") - 1;
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
     const int vehicle = below(vehicles, "vehicle");
     wagon_topic_[vehicle] = below(bag_.topics(), "topic");
@@ -45,9 +45,10 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
 Bytes BagRecorder::Checkpoint() {
   ByteWriter writer;
   writer.Add(bag_.Checkpoint());
-  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_, slides_topic_}) {
+  for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
     writer.Add(static_cast<std::uint64_t>(topic));
   }
+  writer.Add(static_cast<std::uint64_t>(slides_topic_ + 1));
   writer.Add(std::uint64_t{wagon_topic_.size()});
   for (const auto& [vehicle, topic] : wagon_topic_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
@@ -70,6 +71,7 @@ void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
     bag_.Write(ledger_topic_, time, ledger_);
   }
   if (!record.slides.empty()) {
+    if (slides_topic_ < 0) slides_topic_ = bag_.AddTopic<train_brake_msgs::Slides>("/train/slides");
     Convert(record, slides_);
     bag_.Write(slides_topic_, time, slides_);
   }

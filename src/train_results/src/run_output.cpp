@@ -164,7 +164,8 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   if (csv_ != nullptr) csv_->GoOn();
   if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
-  for (const char* old : {"summary.json", "couplers.csv", "report.html"}) fs::remove(folder_ / old);
+  for (const char* old : {"summary.json", "couplers.csv", "slides.csv", "track_wear.csv", "report.html"})
+    fs::remove(folder_ / old);
   StartThread();
 }
 

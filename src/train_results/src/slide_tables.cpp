@@ -25,7 +25,7 @@ void WriteSlideTables(const std::filesystem::path& folder, const train_dynamics:
         },
         slide);
   }
-  WriteFile(folder / "slides.csv", table + "\n");
+  if (!results.Slides().empty()) WriteFile(folder / "slides.csv", table + "\n");
 
   const train_dynamics::TrackWork track = results.Track();
   table = "from_m,to_m,creep_j,brake_j\n";
@@ -33,7 +33,7 @@ void WriteSlideTables(const std::filesystem::path& folder, const train_dynamics:
     const long from_m = track.from_m + static_cast<long>(i);
     table += fmt::format("{},{},{:.9g},{:.9g}\n", from_m, from_m + 1, track.creep_j[i], track.brake_j[i]);
   }
-  WriteFile(folder / "track_wear.csv", table);
+  if (!track.creep_j.empty()) WriteFile(folder / "track_wear.csv", table);
 }
 
 }  // namespace train_results

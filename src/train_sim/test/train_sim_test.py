@@ -69,6 +69,18 @@ class TrainSimTest(unittest.TestCase):
         self.assertLess(abs(balance), 1e-6 * energy["initial_j"])
         self.assertRegex(summary["state_digest"], "^[0-9a-f]{16}$")
 
+    def test_a_twin_tells_how_far_the_maxima_are_determined(self):
+        short = ("--model", "ltd", "--set", "duration_s=5")
+        self.assertIsNone(self.run_ok(EMERGENCY, *short)["twin"])
+        done = train_sim("run", EMERGENCY, *short, "--twin")
+        self.assertEqual(0, done.returncode, done.stderr)
+        twin = json.loads(done.stdout)["twin"]
+        self.assertEqual(1e-9, twin["start_offset_kmh"])
+        self.assertGreater(twin["distance_spread_m"], 1e-10)  # 1e-9 km/h over 5 s: 1.4e-9 m
+        self.assertLess(twin["distance_spread_m"], 1e-8)
+        self.assertLess(twin["max_tension_spread_n"], 1.0)  # smooth gears are not chaotic
+        self.assertEqual(2, train_sim("run", "--resume", self.out, "--twin").returncode)
+
     def test_bag_holds_every_record(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--set", "duration_s=0.2")
         self.assertFalse((self.out / "train.bag.active").exists())
@@ -276,7 +288,7 @@ class TrainSimTest(unittest.TestCase):
     def test_a_second_run_replaces_the_first(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--csv", "--set", "duration_s=0.02")
         self.run_ok(DIP, "--out", self.out, *SHORT)
-        self.assertEqual({"checkpoint", "config.yaml", "summary.json", "train.bag"}, {p.name for p in self.out.iterdir()})
+        self.assertEqual({"checkpoint", "config.yaml", "summary.json", "track_wear.csv", "train.bag"}, {p.name for p in self.out.iterdir()})
 
     def test_files_of_the_user_are_left_alone(self):
         self.out.mkdir()

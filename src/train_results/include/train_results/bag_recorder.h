@@ -32,7 +32,8 @@ class BagRecorder {
   int WagonTopic(int vehicle, int vehicles);
 
   BagWriter bag_;
-  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0, slides_topic_ = 0;
+  int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
+  int slides_topic_ = -1;           ///< below 0: nothing has slid yet
   std::map<int, int> wagon_topic_;  ///< by vehicle
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;

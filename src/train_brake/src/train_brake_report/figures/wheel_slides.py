@@ -30,7 +30,7 @@ def _columns(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
 
 def _why_no_slides(run: Run) -> str:
     if run.slides_file is None:
-        return "there is no slides.csv beside the bag"
+        return "no wheelset slid (there is no slides.csv beside the bag)"
     return "" if len(_columns(run.slides_file).get("vehicle", [])) else "no wheelset slid"
 
 
