@@ -21,12 +21,14 @@ import numpy
 import rosbag
 import rosunit
 
+import train_brake
 from train_brake import Table
 from train_brake import bag as bag_reader
-from train_brake_report import cards, command, figure, paper, series, slides, wave
+from train_brake_report import cards, command, consist, figure, paper, series, slides, wave
 from train_brake_report.figures import space_time
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs
+from train_brake_report.track import Track
 
 HERE = pathlib.Path(__file__).resolve().parent
 CONFIG = HERE.parent / "config"
@@ -314,6 +316,56 @@ class ReportTest(unittest.TestCase):
         self.assertAlmostEqual(15.10, high, delta=0.2)
         for title in ("Largest coupler forces along the train", "Brake wave", "Acceleration, whole train"):
             self.assertIn(title, page.left_out)
+
+    def test_over_the_distance(self):
+        run = simulated("hills", "../../test/short_train", "--model", "ltd", "--set", "duration_s=20", "--set",
+                        "record_interval_s=0.1", "--set", "ledger_interval_s=1", "--set", "detail_vehicles=[]", "--set",
+                        "track={name: hills, heights: [{position_m: -100, height_m: 500}, {position_m: 100, height_m: 501}, "
+                        "{position_m: 300, height_m: 498}], curves: [{from_m: 50, to_m: 150, radius_m: -400}], "
+                        "speed_limits: [{from_m: -1000, limit_kmh: 90}, {from_m: 120, limit_kmh: 60}], "
+                        "stations: [{name: Halt & Ford, position_m: 200}]}")
+        page = self.page(run)
+        self.assertIn("over_the_distance", page.figures)
+        self.assertIn("Halt &amp; Ford", page.text)
+        state = train_brake.load(run)["state"]
+        # Above 60 km/h from when the front is at 120 m; LTD trains of equal wagons: the mean speed is that of the momentum.
+        front_m = state["position_m"][:, 0] + 0.5 * 10.5
+        over = (front_m >= 120) & (3.6 * state["speed_mps"].mean(axis=1) > 60)
+        self.assertGreater(over.sum(), 5)
+        self.assertIn(f"{0.1 * over.sum():.1f} s, by up to", page.text)
+        self.assertIn("2 to 5", page.text)  # the consist's second group
+        stop = json.loads((run / "summary.json").read_text())["stops"][0]
+        pressures = train_brake.load(run)["brake_pressures"]
+        begin = numpy.argmax(pressures["cylinder_pressure_pa"].max(axis=1) > 1e3)
+        way = numpy.interp([pressures.time_s[begin], stop["time_s"]], state.time_s, state["position_m"].mean(axis=1))
+        self.assertIn(f"{way[1] - way[0]:.1f} m from the first pressure", page.text)
+
+    def test_a_route_by_points_is_that_by_lists(self):
+        lists = Track({"grades": [{"from_m": 0, "grade_percent": 1}, {"from_m": 500, "grade_percent": -0.5}],
+                       "curves": [{"from_m": 250, "to_m": 500, "radius_m": -400}],
+                       "speed_limits": [{"from_m": 0, "limit_kmh": 80}, {"from_m": 750, "limit_kmh": 50}]})
+        points = Track({"points": [
+            {"position_m": 0, "grade_permille": 10, "radius_m": 0, "speed_limit_kmh": 80},
+            {"position_m": 250, "radius_m": -400}, {"position_km": 0.5, "grade_percent": -0.5, "radius_m": 0},
+            {"position_m": 750, "speed_limit_kmh": 50, "station": "Zell"}]})
+        at = numpy.arange(-300.0, 1200.0, 12.5)
+        for one, other in ((lists.grades, points.grades), (lists.curvatures, points.curvatures), (lists.limits, points.limits)):
+            numpy.testing.assert_allclose(one.at(at), other.at(at), rtol=1e-14)
+        for track in (lists, points):
+            place, height = track.heights(-100.0, 1000.0)
+            expected = numpy.interp([-100, 0, 500, 1000], place, height) - height[0]
+            numpy.testing.assert_allclose(expected, [0, 1, 6, 3.5], atol=1e-12)
+        numpy.testing.assert_array_equal(points.limits.lowest(numpy.array([0.0, 700.0, 800.0]), numpy.array([700.0, 760.0, 900.0])),
+                                         [80, 50, 50])
+        heights = Track({"heights": [{"position_m": 0, "height_m": 7}, {"position_m": 100, "height_m": 9}]})
+        numpy.testing.assert_allclose(heights.grades.at(numpy.array([-1.5, -0.5, 0.0, 99.0, 100.0])), [0, 0, 0.02, 0.02, 0])
+        place, height = heights.heights(50.0, 200.0)
+        numpy.testing.assert_allclose([height[0], height[-1]], [8, 9])
+
+    def test_masses_are_those_of_all_wheelsets_and_of_the_load(self):
+        six_axles = {"carbody": {"mass_kg": 100.0}, "bolster": {"mass_kg": 10.0}, "wedge_mass_kg": 0.0,
+                     "bogie_frame": {"mass_kg": 20.0}, "wheelset": {"mass_kg": 3.0}, "wheelsets_per_bogie": 3}
+        self.assertEqual(100 + 2 * 10 + 2 * 20 + 6 * 3, consist.mass_kg(six_axles))
 
     def test_a_vehicle_without_a_run(self):
         page = self.page("--vehicle", CONFIG / "vehicles" / "ore_wagon.yaml")

@@ -3,13 +3,17 @@
 from typing import Callable, List, Tuple, Union
 
 from train_brake_report.figure import Figure, LeftOut
-from train_brake_report.figures import brake_table, couplers, dip, energy, pressures, space_time, speeds, vehicle, wheel_forces, wheel_slides
+from train_brake_report.figures import (
+    brake_table, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides)
 from train_brake_report.group import Group
 
 Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out)
 
 OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
     ("Speed", speeds.draw),
+    ("Over the distance", route.draw),
+    ("Engineering numbers", route.quantities),
+    ("Consist", route.consist_table),
     ("Cylinder pressures", pressures.draw),
     ("Cylinder pressure and wave speed over the reduction", brake_table.draw),
     ("Shoe and wheel", wheel_forces.draw),

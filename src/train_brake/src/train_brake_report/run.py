@@ -9,6 +9,7 @@ import numpy
 from train_brake.bag import BagError
 from train_brake.run import bag_of, load_yaml, parsed, read_couplers, text_of
 
+from train_brake_report import consist
 from train_brake_report.bag import Recording, read_bag, read_scenario
 
 KMH_PER_MPS = 3.6
@@ -128,13 +129,12 @@ class Run:
         """Of each vehicle; equal if the configuration is not known."""
         if self.config is None:
             return numpy.ones(self.vehicles)
-        masses = []
-        for item in self.config["train"]["consist"]:
-            v = item["vehicle"]
-            mass = (v["carbody"]["mass_kg"] + 2 * (v["bolster"]["mass_kg"] + 4 * v["wedge_mass_kg"])
-                    + 2 * v["bogie_frame"]["mass_kg"] + 4 * v["wheelset"]["mass_kg"])
-            masses += [mass] * item["count"]
-        return numpy.array(masses)
+        return consist.masses_kg(self.config["train"])
+
+    @functools.cached_property
+    def lengths_m(self) -> numpy.ndarray:
+        """Of each vehicle over couplers; 0 if the configuration is not known."""
+        return consist.lengths_m(self.config["train"]) if self.config else numpy.zeros(self.vehicles)
 
     @functools.cached_property
     def largest_coupler_forces_n(self) -> numpy.ndarray:
