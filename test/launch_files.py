@@ -38,6 +38,15 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual({"/train/master", "/train/wagon_001", "/train/wagon_061", "/train/wagon_122", "/train/wagon_182"},
                          set(by_name.split()))
 
+    def test_which_trains_run_on_wagon_nodes(self):
+        def wagons(*arguments):
+            nodes = subprocess.run(["roslaunch", "--nodes", *arguments], stdout=subprocess.PIPE, check=True, text=True).stdout
+            return sum("wagon" in node for node in nodes.split())
+
+        self.assertEqual(4, wagons(str(LAUNCH / "heavy_haul_mixed.launch"), "nodes:=4"))  # groups of an LTD train are 2D
+        self.assertEqual(0, wagons(str(LAUNCH / "ore_line_emergency.launch"), "nodes:=4"))
+        self.assertEqual(0, wagons(str(LAUNCH / "emergency.launch"), "nodes:=4", "on_nodes:=false"))
+
     def test_machines_get_contiguous_blocks_of_nodes(self):
         config = roslaunch.config.load_config_default(
             [(str(LAUNCH / "emergency.launch"), ["nodes:=7", "machines:=10.1.0.1 10.1.0.2  10.1.0.3", "env_loader:=/env.sh"])],

@@ -97,6 +97,7 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
   fmt::print("{}", json);
+  if (!run.Warning().empty()) fmt::print(stderr, "warning: {}\n", run.Warning());
   const double end_s = run.master().time_s();
   switch (run.exit_code()) {
     case train_run::kFailure:

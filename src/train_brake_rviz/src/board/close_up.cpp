@@ -36,18 +36,38 @@ double MeanOfWheelsets(const CloseUp::Bodies& position, int wheelsets) {
 
 std::string Kilonewtons(double force_n) { return Rounded(1e-3 * force_n, 0) + " kN"; }
 
+/// What is drawn of a vehicle: of one that is one mass, bodies of usual sizes, because it has none.
+train_dynamics::VehicleParams WithBodies(train_dynamics::VehicleParams vehicle) {
+  if (!vehicle.IsOneMass()) return vehicle;
+  vehicle.mass_kg.reset();
+  vehicle.load.reset();
+  vehicle.carbody.cg_height_m = 1.8;
+  vehicle.bolster.cg_height_m = 0.7;
+  vehicle.bogie_frame.cg_height_m = 0.55;
+  vehicle.wheelset.wheel_radius_m = 0.46;
+  vehicle.half_wheelset_spacing_m = std::min(0.9, 0.08 * vehicle.length_m);
+  vehicle.half_bogie_spacing_m = 0.33 * vehicle.length_m;
+  vehicle.coupler_height_m = 1.0;
+  vehicle.bolster_guide_height_m = 0.7;
+  vehicle.centre_plate.height_m = 0.9;
+  vehicle.centre_plate.rim_offset_m = 0.3;
+  vehicle.spring_nest.offset_m = 0.3;
+  return vehicle;
+}
+
 }  // namespace
 
-CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& vehicle, const Bodies& at_rest,
+CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& of_train, const Bodies& at_rest,
                  double motion_exaggeration)
     : area_(area),
-      vehicle_(vehicle),
+      vehicle_(WithBodies(of_train)),
       at_rest_(at_rest),
       exaggeration_(motion_exaggeration),
-      scale_(kSpan / vehicle.length_m),
+      scale_(kSpan / of_train.length_m),
       rail_(area.bottom + kRailUp) {
+  const train_dynamics::VehicleParams& vehicle = vehicle_;
   forward_m_[kCarbody] = 0.0;
-  height_m_[kCarbody] = vehicle.carbody.cg_height_m;
+  height_m_[kCarbody] = vehicle.LoadedCarbody().cg_height_m;
   for (int bogie = 0; bogie < train_dynamics::kBogies; ++bogie) {
     const double sign = bogie == 0 ? 1.0 : -1.0;
     const double centre = sign * vehicle.half_bogie_spacing_m;
@@ -138,7 +158,7 @@ void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) c
   };
   // In metres from each body's centre: (forward, up).
   const double half = 0.5 * vehicle_.length_m - 0.45;
-  const double floor = (kUndergear - 1.0) * vehicle_.carbody.cg_height_m, roof = -1.1 * floor;
+  const double floor = (kUndergear - 1.0) * vehicle_.LoadedCarbody().cg_height_m, roof = -1.1 * floor;
   outline(kCarbody,
           {{half, floor + 0.3},
            {half - 0.3, floor},
@@ -147,7 +167,7 @@ void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) c
            {-half, roof},
            {half, roof}},
           body, Layer::kFill);
-  const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;
+  const double coupler = vehicle_.coupler_height_m - vehicle_.LoadedCarbody().cg_height_m;
   for (const double end : {1.0, -1.0}) {
     const double inner = end * (half - 0.8), outer = end * 0.5 * vehicle_.length_m;
     outline(
@@ -231,7 +251,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
 void CloseUp::DrawCouplerForce(Drawing& drawing, const Bodies& position, double end, double force_n) const {
   if (force_n == 0.0 || !std::isfinite(force_n)) return;
   constexpr double kWidth = 0.8, kGap = 0.6, kNumberAway = 8.0, kNumberUp = 2.4;
-  const double coupler = vehicle_.coupler_height_m - vehicle_.carbody.cg_height_m;
+  const double coupler = vehicle_.coupler_height_m - vehicle_.LoadedCarbody().cg_height_m;
   const double outwards = -end;  // to the right on the board
   const Point face = PlaceOf(position, kCarbody, end * 0.5 * vehicle_.length_m, coupler);
   const Point near = {face.right + outwards * kGap, face.up};

@@ -68,6 +68,10 @@ BrakeSystem ReadPressureTable(const std::string& file, int vehicles) {
 /// Whether a vehicle has a 2D model that can rest; if not, reports which of its parameters are in the way.
 /// @param path  of the vehicle with a dot at its end; empty for the root
 bool MakesWagon(const VehicleParams& vehicle, const std::string& path, Reader& rules) {
+  if (vehicle.IsOneMass()) {
+    rules.Check(false, path + "mass_kg", "is all that the vehicle has: without bodies it has no 2D model");
+    return false;
+  }
   const HertzParams& hertz = vehicle.wheel_rail.hertz;
   const double radius_m = vehicle.wheelset.wheel_radius_m;
   struct Step {

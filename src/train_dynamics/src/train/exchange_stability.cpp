@@ -17,9 +17,8 @@ double LongestStableExchange(const ConnectionParams& connection, double head_mas
 
 double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model) {
   if (model == VehicleModel::kLtdNoInertia) return vehicle.TotalMass();
-  if (model == VehicleModel::kLtd)
-    return vehicle.TotalMass() + EquivalentRotationalMass(vehicle.wheelset, vehicle.Wheelsets());
-  const BodyParams& carbody = vehicle.carbody;
+  if (model == VehicleModel::kLtd) return vehicle.TotalMass() + EquivalentRotationalMass(vehicle);
+  const BodyParams carbody = vehicle.LoadedCarbody();
   const double arm_m = vehicle.coupler_height_m - carbody.cg_height_m;
   return 1.0 / (1.0 / carbody.mass_kg + arm_m * arm_m / carbody.pitch_inertia_kgm2);
 }

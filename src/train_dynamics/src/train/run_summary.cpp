@@ -87,12 +87,25 @@ void RunSummary::JudgeMotion(const TrainRecord& record) {
   // It may stop and be under way again within one record interval.
   if (Stands() && std::abs(mean_speed_mps_) > kMoving) stops_.back().until_s = record.time_s;
   furthest_m_ = std::max(furthest_m_, Forward() * mean_distance_m_);
+  const std::vector<double>& position_m = record.vehicles.position_m;
+  const std::vector<ConsistGroupParams>& groups = scenario_.train.consist;
+  const bool is_beyond = position_m.front() + 0.5 * groups.front().vehicle.length_m > route_.to_m ||
+                         position_m.back() - 0.5 * groups.back().vehicle.length_m < route_.from_m;
+  if (is_beyond && std::isnan(left_route_s_)) left_route_s_ = record.time_s;
+}
+
+std::string RunSummary::RouteWarning() const {
+  if (std::isnan(left_route_s_)) return "";
+  return "at " + Number(left_route_s_) +
+         " s the train lies beyond an end of its route, which is known from " + Number(route_.from_m) +
+         " m to " + Number(route_.to_m) + " m; there, the first and the last of its values hold on";
 }
 
 template <class Self, class Function>
 void RunSummary::ForEachMemory(Self& self, Function& function) {
   function(self.furthest_m_);
   function(self.last_speed_mps_);
+  function(self.left_route_s_);
   for (auto& stop : self.stops_) {
     function(stop.time_s);
     function(stop.distance_m);
@@ -179,7 +192,7 @@ void RunSummary::SetMemory(const std::vector<double>& whole) {
   const auto after_slides = whole.begin() + 1 + static_cast<std::ptrdiff_t>(whole[0]);
   slides_.SetMemory({whole.begin() + 1, after_slides});
   const std::vector<double> memory(after_slides, whole.end());
-  constexpr std::size_t kHead = 2, kStop = 3;  // numbers
+  constexpr std::size_t kHead = 3, kStop = 3;  // numbers
   stops_.assign(memory.size() > kHead ? (memory.size() - kHead) / kStop : 0, {kNone, kNone, kNone});
   MemoryReader reader(memory);
   ForEachMemory(*this, reader);
@@ -211,6 +224,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"stop_time_s\": " << Number(Stands() ? stops_.back().time_s : kNone)
        << ",\n  \"stop_distance_m\": " << Number(Stands() ? stops_.back().distance_m : kNone)
        << ",\n  \"stops\": [" << Stops() << "],\n  \"rolled_back\": " << (RolledBack() ? "true" : "false")
+       << ",\n  \"left_route_s\": " << Number(left_route_s_)
        << ",\n  \"rolled_back_m\": " << Number(BehindFurthest()) << ",\n  \"max_tension_n\": "
        << Extreme(master.in_train_forces().Extremes(), &ForceExtremes::tension_n,
                   &ForceExtremes::tension_time_s)

@@ -97,6 +97,21 @@ void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, con
                                (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
 }
 
+/// Where a train does not begin on its route.
+void WarnOfStart(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
+  const Stretch route = scenario.track.Extent();
+  if (scenario.train.consist.empty()) return;
+  const double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
+  double rear_m = front_m;
+  for (const ConsistGroupParams& group : scenario.train.consist)
+    rear_m -= group.count * group.vehicle.length_m;
+  if (rear_m >= route.from_m && front_m <= route.to_m) return;
+  warnings.push_back({"start_position_m", "the train begins between " + Short(rear_m) + " m and " +
+                                              Short(front_m) + " m, beyond an end of its route (" +
+                                              Short(route.from_m) + " m to " + Short(route.to_m) +
+                                              " m), where the first or the last of its values holds on"});
+}
+
 }  // namespace
 
 int ScenarioParams::StepsPerExchange() const { return static_cast<int>(Parts(exchange_interval_s, dt_s)); }
@@ -164,6 +179,14 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
   JudgeTimes(broken);
   JudgeBrake(broken);
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    if (ModelOfGroup(i) != VehicleModel::kTwoD || !train.consist[i].vehicle.IsOneMass()) continue;
+    broken.push_back(
+        {"train.consist" + Index(i) + ".vehicle.mass_kg",
+         "is all that the vehicle has, but the 2d model needs its bodies (carbody, bolster, bogie_frame, "
+         "wheelset ...); run it with the ltd model, or say model: ltd for the group",
+         {"train", "model"}});
+  }
   const int vehicles = train.VehicleCount();
   for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
     const int vehicle = VehicleIndex(detail_vehicles[i], vehicles);
@@ -294,7 +317,9 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   }
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const WheelsetParams& wheelset = train.consist[i].vehicle.wheelset;
-    if (wheelset.accept_large_inertia || !(wheelset.InertiaRatio() > 1.0)) continue;
+    if (train.consist[i].vehicle.IsOneMass() || wheelset.accept_large_inertia ||
+        !(wheelset.InertiaRatio() > 1.0))
+      continue;
     const std::string group = "train.consist" + Index(i) + ".vehicle.wheelset.";
     warnings.push_back(
         {group + "pitch_inertia_kgm2",
@@ -321,6 +346,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     if (!scenario.adhesion_limit)
       leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
+  WarnOfStart(scenario, warnings);
   if (scenario.Uses(VehicleModel::kTwoD) && !train.consist.empty()) {
     const Stretch reach = ReachOf(scenario);
     WarnOfReach(

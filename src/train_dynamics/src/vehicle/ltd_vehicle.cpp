@@ -9,11 +9,9 @@ LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia
     : brake_rigging(params.brake_rigging),
       propulsion_resistance(params.propulsion_resistance),
       weight_n(params.Weight()),
-      inertia_kg(params.TotalMass() + (with_rotational_inertia
-                                           ? EquivalentRotationalMass(params.wheelset, params.Wheelsets())
-                                           : 0.0)),
+      inertia_kg(params.TotalMass() + (with_rotational_inertia ? EquivalentRotationalMass(params) : 0.0)),
       integrator(method),
-      adhesion_limit(knows_adhesion_limit),
+      adhesion_limit(knows_adhesion_limit && !params.IsOneMass()),
       adhesion(params.wheel_rail.adhesion),
       limit_n(params.Weight() * inertia_kg / params.TotalMass()) {
   strict_config::Validate(params);

@@ -85,7 +85,8 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
     inertia_kgm2[i] = inertia;
     inv_inertia_per_kgm2[i] = 1.0 / inertia;
   };
-  set_body(kCarbody, p.carbody.mass_kg, p.carbody.pitch_inertia_kgm2);
+  const BodyParams carbody = p.LoadedCarbody();
+  set_body(kCarbody, carbody.mass_kg, carbody.pitch_inertia_kgm2);
   for (int b = 0; b < kBogies; ++b) {
     set_body(kFrontBolster + b, p.bolster.mass_kg + 4.0 * p.wedge_mass_kg, p.bolster.pitch_inertia_kgm2);
     set_body(kFrontFrame + b, p.bogie_frame.mass_kg, p.bogie_frame.pitch_inertia_kgm2);
@@ -108,9 +109,9 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
   pad_frame_arm_m = p.wheelset.wheel_radius_m - p.bogie_frame.cg_height_m;
   guide_bolster_arm_m = p.bolster_guide_height_m - p.bolster.cg_height_m;
   guide_frame_arm_m = p.bolster_guide_height_m - p.bogie_frame.cg_height_m;
-  plate_carbody_arm_m = p.centre_plate.height_m - p.carbody.cg_height_m;
+  plate_carbody_arm_m = p.centre_plate.height_m - carbody.cg_height_m;
   plate_bolster_arm_m = p.centre_plate.height_m - p.bolster.cg_height_m;
-  coupler_arm_m = p.coupler_height_m - p.carbody.cg_height_m;
+  coupler_arm_m = p.coupler_height_m - carbody.cg_height_m;
   if (params.friction_wedge) CheckWedgeCoupling(*this);
   weight_n = p.Weight();
   creep_stiffness = CreepStiffnessOf(p);

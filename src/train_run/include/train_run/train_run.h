@@ -58,6 +58,8 @@ class TrainRun {
   /// Completes the results. @param fault  why the run ended, where it is not one that Go has kept
   /// @return the summary as JSON
   std::string Finish(double wall_s, const std::string& fault = "");
+  /// What the user should know of the run beside its summary; empty: nothing.
+  std::string Warning() const { return summary_.RouteWarning(); }
 
   const train_dynamics::TrainMaster& master() const { return master_; }
   const train_dynamics::RunSummary& summary() const { return summary_; }

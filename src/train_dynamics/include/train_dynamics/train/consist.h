@@ -30,6 +30,10 @@ struct ConsistGroupParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Part("vehicle", vehicle, "vehicles");
+    v.Number("load_fraction", vehicle.load_fraction,
+             kFraction);  // of this group, in place of the vehicle's own
+    v.Check(vehicle.load || !vehicle.load_fraction, "load_fraction",
+            "needs a vehicle with load: what it carries when it is full", {"vehicle"});
     v.Choice("model", model, kVehicleModels);
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Integer("count", count, Range{1, 100000, false, false});

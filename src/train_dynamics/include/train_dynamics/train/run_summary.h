@@ -21,7 +21,8 @@ struct TwinRun {
 /// What a run came to. Collected from its records as they pass.
 class RunSummary {
  public:
-  explicit RunSummary(const ScenarioParams& scenario) : scenario_(scenario), slides_(scenario) {}
+  explicit RunSummary(const ScenarioParams& scenario)
+      : scenario_(scenario), slides_(scenario), route_(scenario.track.Extent()) {}
 
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
@@ -41,6 +42,9 @@ class RunSummary {
 
   /// The slides of the run so far, and the work on its track.
   const SlideResults& slides() const { return slides_; }
+
+  /// A sentence about a train that came to lie beyond an end of its route; empty if it did not.
+  std::string RouteWarning() const;
 
   /// What the summary of the whole run needs to know of its beginning.
   std::vector<double> Memory() const;
@@ -72,6 +76,8 @@ class RunSummary {
   const ScenarioParams& scenario_;
   SlideResults slides_;
   std::optional<TwinRun> twin_;
+  Stretch route_;
+  double left_route_s_ = kNone;  ///< when an end of the train was first beyond an end of the route
   double mean_speed_mps_ = 0.0, lead_speed_mps_ = 0.0, tail_speed_mps_ = 0.0;
   double mean_distance_m_ = 0.0;
   int vehicles_ = 0;

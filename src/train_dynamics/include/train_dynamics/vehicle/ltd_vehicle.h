@@ -13,11 +13,14 @@
 
 namespace train_dynamics {
 
-/// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2.
+/// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2; of a vehicle that is
+/// one mass as given.
 ///
 /// Enters the inertia only, never weight, resistance or the force of the grade.
-inline double EquivalentRotationalMass(const WheelsetParams& wheelset, int wheelsets) {
-  return wheelsets * wheelset.pitch_inertia_kgm2 / (wheelset.wheel_radius_m * wheelset.wheel_radius_m);
+inline double EquivalentRotationalMass(const VehicleParams& p) {
+  if (p.IsOneMass()) return p.rotating_mass_kg;
+  const double r2 = p.wheelset.wheel_radius_m * p.wheelset.wheel_radius_m;
+  return p.Wheelsets() * p.wheelset.pitch_inertia_kgm2 / r2;
 }
 
 /// How the one degree of freedom is stepped.

@@ -70,10 +70,30 @@ struct WheelRailParams {
   }
 };
 
-/// A vehicle on two bogies of two or three wheelsets each: all that its LTD and its 2D model need.
+/// What a vehicle carries when it is full.
+struct LoadParams {
+  double mass_kg = kRequired;
+  std::optional<double> cg_height_m;         ///< above rail; 2D model
+  std::optional<double> pitch_inertia_kgm2;  ///< about its own CG; 2D model
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("mass_kg", mass_kg, kPositive);
+    v.Number("cg_height_m", cg_height_m, kPositive);
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kNonNegative);
+  }
+};
+
+/// A vehicle: one mass, which is all that its LTD model needs, or else the bodies of its 2D model, which make its LTD
+/// model as well: a carbody on two bogies of two or three wheelsets each.
 struct VehicleParams {
   std::string name;
-  double length_m = kRequired;  ///< over couplers
+  double length_m = kRequired;          ///< over couplers
+  std::optional<double> mass_kg;        ///< without `load`; given: there are no bodies, and only LTD models
+  int axles = 4;                        ///< of a vehicle with mass_kg: of all units of an articulated one
+  double rotating_mass_kg = 0.0;        ///< m_e of a vehicle with mass_kg: of wheelsets and drives together
+  std::optional<LoadParams> load;       ///< what it carries when it is full, beside mass_kg or the bodies
+  std::optional<double> load_fraction;  ///< how much of that it carries; none: all
   BodyParams carbody;
   BodyParams bolster;      ///< without the wedges
   BodyParams bogie_frame;  ///< the two side frames of a bogie as one body
@@ -101,6 +121,53 @@ struct VehicleParams {
   void Visit(Visitor& v) {
     v.Text("name", name);
     v.Number("length_m", length_m, kPositive);
+    v.Number("mass_kg", mass_kg, kPositive);
+    v.Group("load", load);
+    v.Number("load_fraction", load_fraction, kFraction);
+    v.Check(load || !load_fraction, "load_fraction", "needs load: what the vehicle carries when it is full",
+            {"load"});
+    if (IsOneMass()) {
+      v.Integer("axles", axles, Range{1.0, 1000.0, false, false});
+      v.Number("rotating_mass_kg", rotating_mass_kg, kNonNegative);
+    } else {
+      VisitBodies(v);
+    }
+    v.Group("brake_rigging", brake_rigging);
+    v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection");
+    v.Group("propulsion_resistance", propulsion_resistance);
+  }
+
+  bool IsOneMass() const { return mass_kg.has_value(); }
+  int Wheelsets() const { return IsOneMass() ? axles : 2 * wheelsets_per_bogie; }
+
+  /// What it carries [kg].
+  double LoadMass() const { return load ? load_fraction.value_or(1.0) * load->mass_kg : 0.0; }
+  /// The carbody with what it carries: masses, moments and inertias about the common CG add up.
+  BodyParams LoadedCarbody() const {
+    if (!load) return carbody;
+    const double load_kg = LoadMass(), load_height_m = load->cg_height_m.value_or(carbody.cg_height_m);
+    BodyParams both;
+    both.mass_kg = carbody.mass_kg + load_kg;
+    both.cg_height_m = (carbody.mass_kg * carbody.cg_height_m + load_kg * load_height_m) / both.mass_kg;
+    const double down_m = both.cg_height_m - carbody.cg_height_m, up_m = load_height_m - both.cg_height_m;
+    both.pitch_inertia_kgm2 = carbody.pitch_inertia_kgm2 + carbody.mass_kg * down_m * down_m +
+                              load_fraction.value_or(1.0) * load->pitch_inertia_kgm2.value_or(0.0) +
+                              load_kg * up_m * up_m;
+    return both;
+  }
+
+  /// Mass of the whole vehicle [kg].
+  double TotalMass() const {
+    if (IsOneMass()) return *mass_kg + LoadMass();
+    return LoadedCarbody().mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) +
+           2.0 * bogie_frame.mass_kg + Wheelsets() * wheelset.mass_kg;
+  }
+  double Weight() const { return kGravity * TotalMass(); }  ///< [N]
+
+ private:
+  /// The keys of the 2D model.
+  template <class Visitor>
+  void VisitBodies(Visitor& v) {
     v.Group("carbody", carbody);
     v.Group("bolster", bolster);
     v.Group("bogie_frame", bogie_frame);
@@ -118,9 +185,6 @@ struct VehicleParams {
     v.Group("bolster_guide", bolster_guide);
     v.Number("bolster_guide_height_m", bolster_guide_height_m, kPositive);
     v.Group("centre_plate", centre_plate);
-    v.Group("brake_rigging", brake_rigging);
-    v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection");
-    v.Group("propulsion_resistance", propulsion_resistance);
     v.Check(wheelsets_per_bogie == 3 || middle_wheelset_offset_m == 0.0, "middle_wheelset_offset_m",
             "belongs to wheelsets_per_bogie 3 only", {"wheelsets_per_bogie"});
     v.Check(std::abs(middle_wheelset_offset_m) < half_wheelset_spacing_m, "middle_wheelset_offset_m",
@@ -131,16 +195,9 @@ struct VehicleParams {
     v.Check(2.0 * (half_bogie_spacing_m + half_wheelset_spacing_m) < length_m, "length_m",
             "must exceed the distance between the outer wheelsets",
             {"half_bogie_spacing_m", "half_wheelset_spacing_m"});
+    v.Check(!load || (load->cg_height_m && load->pitch_inertia_kgm2), "load",
+            "must have cg_height_m and pitch_inertia_kgm2 where the vehicle has bodies", {"load"});
   }
-
-  int Wheelsets() const { return 2 * wheelsets_per_bogie; }
-
-  /// Mass of the whole vehicle [kg].
-  double TotalMass() const {
-    return carbody.mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) + 2.0 * bogie_frame.mass_kg +
-           Wheelsets() * wheelset.mass_kg;
-  }
-  double Weight() const { return kGravity * TotalMass(); }  ///< [N]
 };
 
 }  // namespace train_dynamics
