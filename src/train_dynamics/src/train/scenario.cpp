@@ -280,8 +280,9 @@ void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& w
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
     if (scenario.ModelOfGroup(i) == VehicleModel::kTwoD) continue;
     const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
+    if (vehicle.IsOneMass()) continue;  // it has no wheels
     double least = vehicle.wheel_rail.adhesion.friction_coefficient;
-    for (const FrictionPatchParams& patch : scenario.track.friction_patches) {
+    for (const FrictionPatchParams& patch : scenario.track.Patches()) {
       if (patch.from_m >= reach.to_m || patch.to_m <= reach.from_m) continue;
       least = std::min(least,
                        patch.adhesion ? patch.adhesion->friction_coefficient : *patch.friction_coefficient);
