@@ -44,7 +44,12 @@ std::vector<Tread> TreadsOf(const std::vector<StepValue>& steps, const Stretch& 
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const double from_m = i == 0 ? on.from_m : std::max(on.from_m, steps[i].from_m);
     const double to_m = i + 1 < steps.size() ? std::min(on.to_m, steps[i + 1].from_m) : on.to_m;
-    if (from_m < to_m) treads.push_back({from_m, to_m, steps[i].value});
+    if (from_m >= to_m) continue;
+    if (!treads.empty() && treads.back().value == steps[i].value) {
+      treads.back().to_m = to_m;  // a row that changes nothing
+    } else {
+      treads.push_back({from_m, to_m, steps[i].value});
+    }
   }
   return treads;
 }
