@@ -204,6 +204,7 @@ TrackParams LoadTrack(const std::string& file, const std::vector<std::string>& o
   ErrorList errors;
   TrackParams track = Load<TrackParams>(file, OptionsFor(overrides, "tracks"), errors);
   ThrowIfAny(errors);
+  if (track.name.empty()) track.name = std::filesystem::path(file).stem().string();
   return track;
 }
 
