@@ -38,7 +38,7 @@ class StepInParts {
 
   /// Creep law and implicit slip of the four wheelsets, and their part of the books.
   void CreepAndSlip() {
-    wheelsets_ = StepWheelsets(*wagon_, rail_, outer_, force_, dt_, v0_, v1_, kNoOutput);
+    wheelsets_ = StepWheelsets<false>(*wagon_, rail_, outer_, force_, dt_, v0_, v1_, kNoOutput);
   }
 
   /// Shoes, rolling resistance, air drag, couplers, grade.

@@ -259,7 +259,7 @@ TEST(OreWagons, TheEmptyOneRestsOnItsSpringsAndAsksForMuchAdhesion) {
   for (const double nest : e.nest) EXPECT_NEAR(nest, rest, 1e-6);
   EXPECT_LT(rest, 0.022);  // on the outer springs alone
   const auto adhesion = [&](double kmh) {
-    return ShoeForce(p.brake_rigging, kFullPressure, kmh / 3.6) / p.Weight();
+    return ShoeForce(p.Rigging(), kFullPressure, kmh / 3.6) / p.Weight();
   };
   EXPECT_NEAR(100.0 * adhesion(80.0), 16.9, 0.05);
   EXPECT_NEAR(100.0 * adhesion(0.0), 22.8, 0.05);

@@ -450,7 +450,7 @@ TEST(ShoeFriction, LimitsAndAValueByHand) {
 }
 
 TEST(ShoeForce, IsLoadTimesFriction) {
-  const BrakeRiggingParams& p = OreWagon().brake_rigging;
+  const BrakeRigging p = OreWagon().Rigging();
   EXPECT_NEAR(ShoeForce(p, 430e3, 0.0), 0.46035 * 430e3 * 0.322, 1e-9);
   EXPECT_EQ(ShoeForce(p, 0.0, 10.0), 0.0);
 }

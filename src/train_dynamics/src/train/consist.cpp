@@ -19,6 +19,7 @@ Consist::Consist(const TrainParams& train) {
   for (const ConsistGroupParams& group : train.consist) {
     const int type = static_cast<int>(vehicle_types.size());
     vehicle_types.push_back(group.vehicle);
+    command_delay_s.push_back(group.command_delay_s);
     int within_unit = 0;
     if (group.vehicles_per_unit > 1) {
       within_unit = static_cast<int>(connection_types.size());
@@ -32,7 +33,7 @@ Consist::Consist(const TrainParams& train) {
         centre_m.push_back(centre_m.back() -
                            0.5 * (vehicle(vehicles() - 1).length_m + group.vehicle.length_m));
       }
-      if (group.locomotive) locomotives.push_back(vehicles());
+      if (group.locomotive || group.vehicle.traction) locomotives.push_back(vehicles());
       vehicle_type.push_back(type);
     }
   }

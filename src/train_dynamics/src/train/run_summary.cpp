@@ -63,6 +63,13 @@ std::string Partings(const std::vector<Parting>& partings) {
   return entries;
 }
 
+/// What the locomotives took from tank and line, as entries of a JSON object; none for a train that does not tell it.
+std::string EnergyTaken(const Locomotives& locomotives) {
+  if (!locomotives.TellsEnergy()) return "";
+  return ",\n    \"taken_j\": " + Number(locomotives.EnergyTaken()) +
+         ",\n    \"fuel_kg\": " + Number(locomotives.FuelMass());
+}
+
 }  // namespace
 
 void RunSummary::Observe(const TrainRecord& record) {
@@ -236,7 +243,8 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"energy\": {\n    \"time_s\": " << Number(ledger_.time_s)
        << ",\n    \"initial_j\": " << Number(initial_j) << ",\n    \"final_j\": " << Number(ledger_.Stored())
        << ",\n    \"gravity_work_j\": " << Number(ledger_.gravity_work_j)
-       << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j) << ",\n    \"dissipated_j\": {";
+       << ",\n    \"traction_work_j\": " << Number(ledger_.traction_work_j)
+       << EnergyTaken(master.locomotives()) << ",\n    \"dissipated_j\": {";
   const char* separator = "";
   for (const auto& [element, energy] : ledger_.dissipated_j) {
     json << separator << "\n      " << Quoted(element) << ": " << Number(energy);

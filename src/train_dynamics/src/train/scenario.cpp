@@ -56,8 +56,8 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
 
 /// The positions that wheels can have in a run at most.
 ///
-/// Without traction nothing but the grade drives a train: its speed stays below that of the start plus g T times the
-/// steepest fall ahead, and likewise backwards. With traction this bound must grow.
+/// Nothing but the grade and traction drives a train: its speed stays below that of the start plus T times the largest
+/// acceleration that they can give, and likewise backwards, where traction does not drive.
 Stretch ReachOf(const ScenarioParams& scenario) {
   double steepest_fall = 0.0, steepest_rise = 0.0;
   for (const StepValue& grade : scenario.track.Grades()) {
@@ -69,15 +69,20 @@ Stretch ReachOf(const ScenarioParams& scenario) {
   for (const ConsistGroupParams& group : scenario.train.consist)
     rear_m -= group.count * group.vehicle.length_m;
   const double time_s = scenario.duration_s;
-  double fastest_mps = 0.0, slowest_mps = 0.0;
+  double fastest_mps = 0.0, slowest_mps = 0.0, traction_n = 0.0, weight_n = 0.0;
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    const ConsistGroupParams& group = scenario.train.consist[i];
     fastest_mps = std::max(fastest_mps, scenario.InitialSpeedOfGroup(i));
     slowest_mps = std::min(slowest_mps, scenario.InitialSpeedOfGroup(i));
+    weight_n += group.count * group.vehicle.Weight();
+    if (!group.vehicle.traction) continue;
+    traction_n += group.count * group.vehicle.traction->tractive_effort.starting_effort_n;
   }
   const auto way = [&](double start_mps, double slope) {
     return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
   };
-  return {rear_m - way(-slowest_mps, steepest_rise), front_m + way(fastest_mps, steepest_fall)};
+  return {rear_m - way(-slowest_mps, steepest_rise),
+          front_m + way(fastest_mps, steepest_fall + traction_n / weight_n)};
 }
 
 /// Warns once of the entries of a list of the track that no wheel reaches.
@@ -110,6 +115,31 @@ void WarnOfStart(const ScenarioParams& scenario, std::vector<Warning>& warnings)
                                               Short(front_m) + " m, beyond an end of its route (" +
                                               Short(route.from_m) + " m to " + Short(route.to_m) +
                                               " m), where the first or the last of its values holds on"});
+}
+
+/// Warns of a locomotive whose effort is more than a rail gives or than its own power.
+void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
+  constexpr double kLargestAdhesion = 0.36;
+  constexpr double kRounding = 1e-3;  // of efforts in tables
+  for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
+    const VehicleParams& vehicle = scenario.train.consist[i].vehicle;
+    if (!vehicle.traction) continue;
+    const TractiveEffortParams& effort = vehicle.traction->tractive_effort;
+    const std::string part = "train.consist" + Index(i) + ".vehicle.traction.tractive_effort.";
+    const double adhesion = effort.starting_effort_n / vehicle.DrivenWeight();
+    if (adhesion > kLargestAdhesion) {
+      warnings.push_back({part + "starting_effort_n", part + "starting_effort_n asks for " + Short(adhesion) +
+                                                          " of the weight on the driven wheels, more than " +
+                                                          Short(kLargestAdhesion) +
+                                                          ", which a dry rail gives to a modern locomotive"});
+    }
+    const double power_w = effort.table ? effort.table->LargestPower() : 0.0;
+    if (power_w > (1.0 + kRounding) * effort.rim_power_w) {
+      warnings.push_back({part + "table", part + "table asks for " + Short(power_w) +
+                                              " W, more than rim_power_w " + Short(effort.rim_power_w) +
+                                              ", which limits it there"});
+    }
+  }
 }
 
 }  // namespace
@@ -201,6 +231,7 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   }
   JudgeDips(broken);
   JudgeSlideProtection(broken);
+  for (const BrokenRule& rule : JudgeLocomotiveCommands(locomotive_commands, train)) broken.push_back(rule);
   return broken;
 }
 
@@ -287,7 +318,7 @@ void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& w
       least = std::min(least,
                        patch.adhesion ? patch.adhesion->friction_coefficient : *patch.friction_coefficient);
     }
-    const double asked = ShoeForce(vehicle.brake_rigging, pressure_pa, 0.0) / vehicle.Weight();
+    const double asked = ShoeForce(vehicle.Rigging(), pressure_pa, 0.0) / vehicle.Weight();
     if (asked <= least) continue;
     const std::string key = "train.consist" + Index(i) + ".vehicle";
     warnings.push_back({key, "the brake of " + key + " asks in an emergency for up to " + Short(asked) +
@@ -336,6 +367,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     warnings.push_back({key, std::string("the ") + ModelName(model) + " model leaves out " + key +
                                  ": its wheels neither slide nor lock"});
   }
+  WarnOfTraction(scenario, warnings);
   for (const VehicleModel model : {VehicleModel::kLtd, VehicleModel::kLtdNoInertia}) {
     if (!scenario.Uses(model)) continue;
     const auto leaves_out = [&](const std::string& key, std::size_t entries) {

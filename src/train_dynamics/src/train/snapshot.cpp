@@ -10,7 +10,7 @@ namespace {
 
 // Each rises when the fields or their meaning change; in all versions of a train's checkpoint the scenario comes first.
 constexpr std::uint64_t kBlockFormat = 2;
-constexpr std::uint64_t kTrainFormat = 3;
+constexpr std::uint64_t kTrainFormat = 4;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -123,6 +123,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   Add(checkpoint.vehicles, writer);
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.brake);
+  writer.Add(checkpoint.locomotives);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
   return Finish(writer);
@@ -146,6 +147,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.vehicles = States(reader);
   checkpoint.connections = reader.Numbers();
   checkpoint.brake = reader.Numbers();
+  checkpoint.locomotives = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();
   reader.End();

@@ -14,6 +14,8 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
+      locomotives_(consist, scenario.locomotive_commands),
+      curves_(scenario.track, consist, scenario.start_position_m),
       reply_(consist.vehicles(), scenario.DetailedVehicles()) {
   record_.vehicles = reply_;
   record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
@@ -45,6 +47,10 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
   brake.End();
+  MemoryReader locomotives(checkpoint.locomotives);
+  locomotives_.ForEachField(locomotives);
+  locomotives.End();
+  locomotives_.PassBy((static_cast<double>(checkpoint.exchange) - 0.5) * scenario_.exchange_interval_s);
   transport_.Resume(checkpoint.exchange, checkpoint.vehicles, reply_);
   last_speed_mps_ = reply_.speed_mps;
   exchange_ = first_exchange_ = checkpoint.exchange;
@@ -67,6 +73,9 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   MemoryWriter brake;
   BrakeSystem(brake_).ForEachField(brake);  // of a copy: the list of fields is written for changing them, too
   checkpoint.brake = brake.Take();
+  MemoryWriter locomotives;
+  Locomotives(locomotives_).ForEachField(locomotives);
+  checkpoint.locomotives = locomotives.Take();
   return checkpoint;
 }
 
@@ -75,6 +84,10 @@ void TrainMaster::Exchange() {
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
   if (can_part_) OpenPipes();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
+  locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
+
+  curves_.Evaluate(scenario_.exchange_interval_s, reply_.head_displacement_m, reply_.head_velocity_mps,
+                   request_);
 
   const std::uint64_t next = exchange_ + 1;
   request_.exchange = exchange_;
@@ -117,6 +130,7 @@ void TrainMaster::ShowRecord() {
   for (std::uint64_t vehicle : record.vehicles.state_digest) digest.Add(vehicle);
   forces_.AddMemoryTo(digest);
   brake_.ForEachField(MemoryDigest(digest));
+  locomotives_.ForEachField(MemoryDigest(digest));
   digest_ = digest.value();
 
   double mass = 0.0, momentum = 0.0, moment = 0.0;

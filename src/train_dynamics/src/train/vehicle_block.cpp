@@ -280,7 +280,7 @@ class BatchedBlock : public VehicleBlock {
       const std::size_t at = offset + run.begin - first_;
       sound &= std::visit(
           [&](auto& batch) {
-            return batch.Advance(track_, request, PlacesOf(request, at),
+            return batch.Advance(track_, request, PlacesOfThoseThatAct(request, at, batch.size()),
                                  PlacesOf(static_cast<ReplyArrays&>(reply), at), request.record);
           },
           run.batch);

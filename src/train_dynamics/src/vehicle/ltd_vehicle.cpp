@@ -6,8 +6,8 @@ namespace train_dynamics {
 
 LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method,
                        bool knows_adhesion_limit)
-    : brake_rigging(params.brake_rigging),
-      propulsion_resistance(params.propulsion_resistance),
+    : brake_rigging(params.Rigging()),
+      propulsion_resistance(params.Resistance()),
       weight_n(params.Weight()),
       inertia_kg(params.TotalMass() + (with_rotational_inertia ? EquivalentRotationalMass(params) : 0.0)),
       integrator(method),

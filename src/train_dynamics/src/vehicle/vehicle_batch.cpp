@@ -49,6 +49,7 @@ LoadPlaces Behind(LoadPlaces at, int vehicles) {
       },
       at);
   if (at.wheelset_pressure_pa != nullptr) at.wheelset_pressure_pa += vehicles * kMostWheelsets;
+  if (at.traction_share != nullptr) at.traction_share += vehicles * kMostWheelsets;
   return at;
 }
 
@@ -78,6 +79,7 @@ class SpareLoads {
                        const double*& place) { Fill(from, used, values, place); },
                 at, values_, places_);
     places_.wheelset_pressure_pa = at.wheelset_pressure_pa;  // those of whole packs
+    places_.traction_share = at.traction_share;
   }
   const LoadPlaces& places() const { return places_; }
 

@@ -72,7 +72,7 @@ void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
 
 template <int kPerBogie>
 BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
-    : params(vehicle), wedge(vehicle.friction_wedge.value_or(kNoWedge)) {
+    : params(vehicle), wedge(vehicle.friction_wedge.value_or(kNoWedge)), rigging(vehicle.Rigging()) {
   strict_config::Validate(params);
   if (params.wheelsets_per_bogie != kPerBogie) {
     throw std::invalid_argument("wheelsets_per_bogie must be " + std::to_string(kPerBogie) + ", got " +
@@ -93,7 +93,7 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
     bogie_offset_m[b] = b == 0 ? p.half_bogie_spacing_m : -p.half_bogie_spacing_m;
   }
   for (int i = 0; i < kWheelsets; ++i) {
-    set_body(kWheelset1 + i, p.wheelset.mass_kg, p.wheelset.pitch_inertia_kgm2);
+    set_body(kWheelset1 + i, p.wheelset.mass_kg, p.PitchInertia(i));
     const int bogie = BogieOfWheelset<kPerBogie>(i), place = i % kPerBogie;  // 0 = front
     double offset = bogie == 0 ? p.middle_wheelset_offset_m : -p.middle_wheelset_offset_m;
     if (place == 0) offset = p.half_wheelset_spacing_m;
@@ -114,8 +114,18 @@ BogieVehicle<kPerBogie>::BogieVehicle(const VehicleParams& vehicle)
   coupler_arm_m = p.coupler_height_m - carbody.cg_height_m;
   if (params.friction_wedge) CheckWedgeCoupling(*this);
   weight_n = p.Weight();
+  resistance = p.Resistance();
   creep_stiffness = CreepStiffnessOf(p);
-  rolling = {p.wheelset.wheel_radius_m, 1.0 / p.wheelset.mass_kg, 1.0 / p.wheelset.pitch_inertia_kgm2};
+  rolling = {p.wheelset.wheel_radius_m, 1.0 / p.wheelset.mass_kg, 1.0 / p.PitchInertia(0)};
+  rolling_of_each.radius_m = rolling.radius_m;
+  rolling_of_each.inv_mass_per_kg = rolling.inv_mass_per_kg;
+  const int driven_wheelsets = p.traction ? p.traction->DrivenOf(kWheelsets) : kWheelsets;
+  driven_share = 1.0 / driven_wheelsets;
+  some_driven = driven_wheelsets < kWheelsets;
+  for (int i = 0; i < kWheelsets; ++i) {
+    driven[i] = !p.traction || p.traction->Drives(i) ? 1.0 : 0.0;
+    rolling_of_each.inv_inertia_per_kgm2[i] = 1.0 / p.PitchInertia(i);
+  }
 }
 
 template <int kPerBogie>

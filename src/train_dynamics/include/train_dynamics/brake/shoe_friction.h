@@ -1,19 +1,86 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/numeric/elementary.h"
+#include "train_dynamics/numeric/linear_table.h"
+#include "train_dynamics/numeric/logarithm.h"
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/parameters.h"
 
 namespace train_dynamics {
 
-/// Coefficient of friction between brake shoe and wheel tread.
-struct ShoeFrictionParams {
-  double standstill_friction_coefficient = kRequired;  ///< at v = 0
-  double reference_speed_kmh = kRequired;              ///< V
+/// Laws of the friction between brake shoe and tread; k = |speed| in km/h, K = force of one shoe in tonnes-force
+/// (9.81 kN).
+enum class ShoeFrictionLaw {
+  kEq3,          ///< mu_0 (k + V) / (2 k + V): paper Eq 3
+  kComposition,  ///< 0.44 (K + 20) / (4 K + 20) (k + 150) / (2 k + 150) [M] (Russian traction rules)
+  kCastIron,     ///< 0.6 (16 K + 100) / (80 K + 100) (k + 100) / (5 k + 100) [M] (Karwatzki; the same rules)
+  kTos,  ///< 0.64 / (V^0.15 + 0.1 / V) - fade, V = max(1, |speed| in mph) [S] (Low & Garg 1977, AAR R-269)
+  kTable
+};
+
+/// Friction over speed at one shoe force.
+struct ShoeFrictionCurveParams {
+  double shoe_load_kn = kRequired;
+  std::vector<double> friction_coefficient;  ///< [speed of the table]
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive);
-    v.Number("reference_speed_kmh", reference_speed_kmh, kPositive);
+    v.Number("shoe_load_kn", shoe_load_kn, kPositive);
+    v.Numbers("friction_coefficient", friction_coefficient, kNonNegative);
+  }
+};
+
+/// Friction over speed and shoe force, linear in both between points; beyond the first and the last, their values.
+struct ShoeFrictionTableParams {
+  std::vector<double> speed_kmh;
+  std::vector<ShoeFrictionCurveParams> curves;  ///< by ascending shoe force
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Numbers("speed_kmh", speed_kmh, kNonNegative);
+    v.List("curves", curves);
+    v.Check(!speed_kmh.empty(), "speed_kmh", "must list the speeds of the table");
+    v.Check(IsAscending(speed_kmh), "speed_kmh", "must ascend");
+    v.Check(!curves.empty(), "curves", "must list at least one curve");
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      const std::string key = "curves[" + std::to_string(i) + "].";
+      v.Check(curves[i].friction_coefficient.size() == speed_kmh.size(), key + "friction_coefficient",
+              "must have as many values as speed_kmh", {"speed_kmh", "curves"});
+      v.Check(i == 0 || curves[i].shoe_load_kn > curves[i - 1].shoe_load_kn, key + "shoe_load_kn",
+              "must be greater than that of the curve before", {"curves"});
+    }
+  }
+};
+
+/// Coefficient of friction between brake shoe and wheel tread.
+struct ShoeFrictionParams {
+  double standstill_friction_coefficient = kRequired;  ///< mu_0 of eq3, at v = 0
+  double reference_speed_kmh = kRequired;              ///< V of eq3
+  ShoeFrictionLaw law = ShoeFrictionLaw::kEq3;
+  double shoe_temperature_c = 20.0;  ///< of the law tos; constant: shoes do not warm up yet
+  ShoeFrictionTableParams table;
+  double wet_factor = 1.0;  ///< on every law: 1 dry; wet composition shoes 0.8 [A]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Choice("law", law,
+             {{"eq3", ShoeFrictionLaw::kEq3},
+              {"composition", ShoeFrictionLaw::kComposition},
+              {"cast_iron", ShoeFrictionLaw::kCastIron},
+              {"tos", ShoeFrictionLaw::kTos},
+              {"table", ShoeFrictionLaw::kTable}});
+    if (law == ShoeFrictionLaw::kEq3) {
+      v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive);
+      v.Number("reference_speed_kmh", reference_speed_kmh, kPositive);
+    }
+    if (law == ShoeFrictionLaw::kTos) v.Number("shoe_temperature_c", shoe_temperature_c, Range{-60.0, 600.0});
+    if (law == ShoeFrictionLaw::kTable) v.Group("table", table);
+    v.Number("wet_factor", wet_factor, Range{0.0, 1.0, true, false});
   }
 };
 
@@ -25,6 +92,47 @@ T ShoeFriction(const ShoeFrictionParams& p, T speed) {
   const T v_kmh = 3.6 * Abs(speed);
   return p.standstill_friction_coefficient * (v_kmh + p.reference_speed_kmh) /
          (2.0 * v_kmh + p.reference_speed_kmh);
+}
+
+/// What the law tos loses in a hot shoe [-], T in degrees Fahrenheit:  0 up to 200, 2.5e-6 (T - 200)^2 up to 420,
+/// 0.00816 sqrt(T - 200) above.
+template <class T>
+T TosFade(T temperature_c) {
+  const T above_f = Max(T(0.0), 1.8 * temperature_c + 32.0 - 200.0);
+  return Select(above_f <= 220.0, 2.5e-6 * above_f * above_f, 0.00816 * Sqrt(above_f));
+}
+
+/// Looks up friction coefficients for so many speeds [km/h] and shoe loads [kN].
+void LookUpShoeFriction(const ShoeFrictionTableParams& table, int count, const double* speed_kmh,
+                        const double* shoe_load_kn, double* friction_coefficient);
+
+/// Shoe friction [-] by any of the laws, even in the speed, >= 0.
+/// @param speed        of the tread, or of the vehicle [m/s]
+/// @param shoe_load_n  normal force of one shoe [N], >= 0
+template <class T>
+T ShoeFrictionByLaw(const ShoeFrictionParams& p, T speed, T shoe_load_n) {
+  const T k = 3.6 * Abs(speed);
+  T mu(0.0);
+  if (p.law == ShoeFrictionLaw::kEq3) {
+    mu = ShoeFriction(p, speed);
+  } else if (p.law == ShoeFrictionLaw::kComposition) {
+    const T load_tf = shoe_load_n / 9810.0;
+    mu = 0.44 * (load_tf + 20.0) / (4.0 * load_tf + 20.0) * ((k + 150.0) / (2.0 * k + 150.0));
+  } else if (p.law == ShoeFrictionLaw::kCastIron) {
+    const T load_tf = shoe_load_n / 9810.0;
+    mu = 0.6 * (16.0 * load_tf + 100.0) / (80.0 * load_tf + 100.0) * ((k + 100.0) / (5.0 * k + 100.0));
+  } else if (p.law == ShoeFrictionLaw::kTos) {
+    const T mph = Max(T(1.0), k / 1.609344);
+    mu = Max(T(0.0), 0.64 / (Exp(0.15 * Log(mph)) + 0.1 / mph) - TosFade(T(p.shoe_temperature_c)));
+  } else {
+    constexpr int kLanes = kLanesOf<T>;
+    double speed_kmh[kLanes], load_kn[kLanes], friction[kLanes];
+    Store(k, speed_kmh);
+    Store(1e-3 * shoe_load_n, load_kn);
+    LookUpShoeFriction(p.table, kLanes, speed_kmh, load_kn, friction);
+    mu = Load<T>(friction);
+  }
+  return p.wet_factor * mu;
 }
 
 /// What the brake shoes hang on, and with it what the torques on the wheelsets react on (2D model).
@@ -40,16 +148,109 @@ enum class FrictionSpeed {
   kVehicle  ///< that of the carbody
 };
 
+/// How the shoes' normal load follows from the cylinder pressure.
+enum class ShoeLoadForm {
+  kPerPressure,     ///< C p
+  kCylinder,        ///< max(0, p A - F_spring) i eta
+  kNetBrakingRatio  ///< C p, with C such that the load is a share of the vehicle's weight at a pressure
+};
+
+/// Brake cylinder and levers. All of the vehicle's cylinders are one.
+struct BrakeCylinderParams {
+  double piston_area_m2 = kRequired;  ///< A
+  double return_spring_n = 0.0;       ///< F_spring
+  double leverage_ratio = kRequired;  ///< i, shoes' force over the piston's
+  std::optional<double>
+      efficiency;  ///< eta; not given: sqrt(ln(p - 6)) / 3.2, p in psi, that of 10 psi below (TOS) [S]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("piston_area_m2", piston_area_m2, kPositive);
+    v.Number("return_spring_n", return_spring_n, kNonNegative);
+    v.Number("leverage_ratio", leverage_ratio, kPositive);
+    v.Number("efficiency", efficiency, Range{0.0, 1.0, true, false});
+  }
+};
+
+/// Load of all shoes over the vehicle's weight at a cylinder pressure: 0.11 of loaded, 0.25 of empty wagons at full
+/// service (AAR) [S].
+struct NetBrakingRatioParams {
+  double ratio = kRequired;
+  double at_pressure_kpa = kRequired;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("ratio", ratio, Range{0.0, 2.0, false, false});
+    v.Number("at_pressure_kpa", at_pressure_kpa, kPositive);
+  }
+};
+
+enum class LoadSensingKind {
+  kProportional,  ///< clamp(m / full mass, least share, 1)
+  kTwoStep        ///< the empty share below the change-over mass, else 1
+};
+
+/// A brake that is weaker where the vehicle is not full.
+struct LoadSensingParams {
+  LoadSensingKind kind = LoadSensingKind::kProportional;
+  double full_mass_kg = kRequired;  ///< of the vehicle for which the full load of the shoes is meant
+  double least_share = 0.3;         ///< [A]
+  double changeover_mass_kg = kRequired;
+  double empty_share = 0.5;  ///< 0.35 to 0.60 [S]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Choice("kind", kind,
+             {{"proportional", LoadSensingKind::kProportional}, {"two_step", LoadSensingKind::kTwoStep}});
+    if (kind == LoadSensingKind::kProportional) {
+      v.Number("full_mass_kg", full_mass_kg, kPositive);
+      v.Number("least_share", least_share, kFraction);
+    } else {
+      v.Number("changeover_mass_kg", changeover_mass_kg, kPositive);
+      v.Number("empty_share", empty_share, kFraction);
+    }
+  }
+
+  /// The share of the full load of the shoes that a vehicle of this mass has.
+  double Share(double mass_kg) const {
+    if (kind == LoadSensingKind::kTwoStep) return mass_kg < changeover_mass_kg ? empty_share : 1.0;
+    return Clamp(mass_kg / full_mass_kg, least_share, 1.0);
+  }
+};
+
 /// Brake rigging of a vehicle: from cylinder pressure to the shoes' tangential force.
 struct BrakeRiggingParams {
   double shoe_load_per_pressure_n_per_pa = kRequired;  ///< C, normal load of all shoes per cylinder pressure
   ShoeFrictionParams shoe_friction;
   BrakeReaction reaction = BrakeReaction::kFrame;
   FrictionSpeed friction_speed = FrictionSpeed::kTread;
+  ShoeLoadForm shoe_load = ShoeLoadForm::kPerPressure;
+  BrakeCylinderParams cylinder;
+  NetBrakingRatioParams net_braking_ratio;
+  int shoes = 8;  ///< of the vehicle; they share the load
+  std::optional<LoadSensingParams> load_sensing;
+  bool cut_out = false;  ///< the vehicle's air brake does not act
+  double hand_brake_ratio =
+      0.0;  ///< friction force of the hand brake over the weight; 0: released; 0.02 to 0.1 applied
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("shoe_load_per_pressure_n_per_pa", shoe_load_per_pressure_n_per_pa, kNonNegative);
+    v.Choice("shoe_load", shoe_load,
+             {{"per_pressure", ShoeLoadForm::kPerPressure},
+              {"cylinder", ShoeLoadForm::kCylinder},
+              {"net_braking_ratio", ShoeLoadForm::kNetBrakingRatio}});
+    if (shoe_load == ShoeLoadForm::kPerPressure)
+      v.Number("shoe_load_per_pressure_n_per_pa", shoe_load_per_pressure_n_per_pa, kNonNegative);
+    if (shoe_load == ShoeLoadForm::kCylinder) v.Group("cylinder", cylinder);
+    if (shoe_load == ShoeLoadForm::kNetBrakingRatio) v.Group("net_braking_ratio", net_braking_ratio);
+    v.Integer("shoes", shoes, Range{1, 48, false, false});
+    v.Group("load_sensing", load_sensing);
+    v.Check(
+        !load_sensing || shoe_load != ShoeLoadForm::kNetBrakingRatio, "load_sensing",
+        "must not be given with shoe_load net_braking_ratio, which is that of the vehicle as it is loaded",
+        {"shoe_load"});
+    v.Flag("cut_out", cut_out);
+    v.Number("hand_brake_ratio", hand_brake_ratio, Range{0.0, 0.3, false, false});
     v.Group("shoe_friction", shoe_friction);
     v.Choice("reaction", reaction,
              {{"frame", BrakeReaction::kFrame},
@@ -60,10 +261,69 @@ struct BrakeRiggingParams {
   }
 };
 
-/// Largest tangential force of all shoes of a vehicle [N]: C p mu_b(v). It opposes the wheels' rotation.
+/// Efficiency of a brake rigging [-] after the Train Operations Simulator: sqrt(ln(p - 6)) / 3.2, p >= 10 in psi.
 template <class T>
-T ShoeForce(const BrakeRiggingParams& p, T cylinder_pressure_pa, T speed) {
-  return p.shoe_load_per_pressure_n_per_pa * cylinder_pressure_pa * ShoeFriction(p.shoe_friction, speed);
+T TosRiggingEfficiency(T pressure_pa) {
+  const T psi = Max(T(10.0), pressure_pa / 6894.757293168);
+  return Sqrt(Log(psi - 6.0)) / 3.2;
+}
+
+/// The rigging of a vehicle of given weight. What is constant in it.
+struct BrakeRigging {
+  BrakeRigging(const BrakeRiggingParams& p, double mass_kg, double weight_n)
+      : params(p),
+        load_share(p.cut_out        ? 0.0
+                   : p.load_sensing ? p.load_sensing->Share(mass_kg)
+                                    : 1.0),
+        load_per_pressure_n_per_pa(p.shoe_load_per_pressure_n_per_pa),
+        efficiency(p.cylinder.efficiency.value_or(0.0)),
+        hand_brake_n(p.hand_brake_ratio * weight_n),
+        is_plain(p.shoe_load != ShoeLoadForm::kCylinder && p.shoe_friction.law == ShoeFrictionLaw::kEq3 &&
+                 p.shoe_friction.wet_factor == 1.0 && p.hand_brake_ratio == 0.0) {
+    if (p.shoe_load == ShoeLoadForm::kNetBrakingRatio) {
+      load_per_pressure_n_per_pa =
+          p.net_braking_ratio.ratio * weight_n / (1e3 * p.net_braking_ratio.at_pressure_kpa);
+    }
+    load_per_pressure_n_per_pa *= load_share;
+  }
+
+  BrakeRiggingParams params;
+  double load_share;                  ///< by load sensing or cut-out
+  double load_per_pressure_n_per_pa;  ///< C, load share included; not of the form kCylinder
+  double efficiency;                  ///< of the form kCylinder; 0: TosRiggingEfficiency
+  double hand_brake_n;                ///< constant friction force of all shoes
+  bool is_plain;                      ///< C p by Eq 3, without hand brake
+};
+
+/// Normal load of all shoes of a vehicle [N], >= 0.
+template <class T>
+T ShoeLoad(const BrakeRigging& rigging, T cylinder_pressure_pa) {
+  if (rigging.params.shoe_load != ShoeLoadForm::kCylinder) {
+    return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa;
+  }
+  const BrakeCylinderParams& cylinder = rigging.params.cylinder;
+  const T efficiency =
+      rigging.efficiency > 0.0 ? T(rigging.efficiency) : TosRiggingEfficiency(cylinder_pressure_pa);
+  return (rigging.load_share * cylinder.leverage_ratio) * efficiency *
+         Max(T(0.0), cylinder.piston_area_m2 * cylinder_pressure_pa - cylinder.return_spring_n);
+}
+
+/// ShoeForce of a rigging that is not plain. A function of its own, so that the step of all others does not grow.
+template <class T>
+[[gnu::noinline, gnu::flatten]] T ShoeForceByLaw(const BrakeRigging& rigging, T cylinder_pressure_pa,
+                                                 T speed) {
+  const T load = ShoeLoad(rigging, cylinder_pressure_pa);
+  return load * ShoeFrictionByLaw(rigging.params.shoe_friction, speed, load * (1.0 / rigging.params.shoes)) +
+         rigging.hand_brake_n;
+}
+
+/// Largest tangential force of all shoes of a vehicle [N]: the load times mu_b(v), and that of the hand brake. It opposes
+/// the wheels' rotation.
+template <class T>
+T ShoeForce(const BrakeRigging& rigging, T cylinder_pressure_pa, T speed) {
+  if (!rigging.is_plain) return ShoeForceByLaw(rigging, cylinder_pressure_pa, speed);
+  return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa *
+         ShoeFriction(rigging.params.shoe_friction, speed);
 }
 
 }  // namespace train_dynamics

@@ -5,26 +5,106 @@
 
 namespace train_dynamics {
 
-/// Propulsion resistance of a vehicle (paper Eq 5), in newtons per kilonewton of its weight: RollingResistance +
-/// AirDrag.
-struct PropulsionResistanceParams {
-  double constant_n_per_kn = kRequired;        ///< a
-  double linear_n_per_kn_kmh = kRequired;      ///< b
-  double quadratic_n_per_kn_kmh2 = kRequired;  ///< c, aerodynamic
+/// Resistance of a vehicle in newtons per kilonewton of its weight:  a + b k + c k^2,  k = |speed| in km/h.
+///
+/// Every law of propulsion resistance is brought to this form for a vehicle of given mass and number of axles
+/// (CoefficientsOf), so that the time step knows only one.
+struct ResistanceCoefficients {
+  double constant_n_per_kn = 0.0;        ///< a
+  double linear_n_per_kn_kmh = 0.0;      ///< b
+  double quadratic_n_per_kn_kmh2 = 0.0;  ///< c, aerodynamic
+};
+
+enum class PropulsionResistanceLaw {
+  kAbc,            ///< the three coefficients as they are
+  kCn,             ///< Canadian National, AREMA Manual ch. 16
+  kModifiedDavis,  ///< as in Cole, Handbook of Railway Vehicle Dynamics ch. 9
+  kSzd,            ///< Russian traction rules, four-axle wagons on roller bearings
+  kStrahl
+};
+
+/// r = 1.5 + 18 n / W + 0.03 V + C A V^2 / (10000 W)  in pounds per short ton; n axles, W short tons, V mph. [S]
+/// (AREMA Manual ch. 16, as in the manual of the Train Performance Simulator)
+struct CnResistanceParams {
+  double frontal_area_ft2 = kRequired;  ///< A
+  double drag_coefficient =
+      kRequired;  ///< C, of a vehicle within a train: 4.2 a loaded gondola, 24 a leading locomotive
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("frontal_area_ft2", frontal_area_ft2, kPositive);
+    v.Number("drag_coefficient", drag_coefficient, kNonNegative);
+  }
+};
+
+/// r = K_a (2.943 + 89.2 / m_a + 0.0306 k + 1.718 K_ad k^2 / (m_a n))  in newtons per tonne; m_a tonnes per axle. [M]
+struct ModifiedDavisParams {
+  double adjustment_factor = 0.85;  ///< K_a
+  double drag_factor = 0.07;        ///< K_ad
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("adjustment_factor", adjustment_factor, kPositive);
+    v.Number("drag_factor", drag_factor, kNonNegative);
+  }
+};
+
+/// r = f0 + f2 ((k + w) / 100)^2  in newtons per kilonewton. [S] (Wende, Fahrdynamik des Schienenverkehrs, 2003, p. 153)
+struct StrahlParams {
+  double constant_n_per_kn = kRequired;   ///< f0: 1.4 of ore wagons, 2.2 of a V 90
+  double quadratic_n_per_kn = kRequired;  ///< f2: 3.9 of ore wagons, 10 of a V 90
+  double head_wind_kmh = 0.0;             ///< w: 15 for locomotives
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative);
-    v.Number("linear_n_per_kn_kmh", linear_n_per_kn_kmh, kNonNegative);
-    v.Number("quadratic_n_per_kn_kmh2", quadratic_n_per_kn_kmh2, kNonNegative);
+    v.Number("quadratic_n_per_kn", quadratic_n_per_kn, kNonNegative);
+    v.Number("head_wind_kmh", head_wind_kmh, kNonNegative);
   }
 };
+
+/// The law of a vehicle's propulsion resistance and its parameters. `abc` is the paper's Eq 5.
+///
+/// `szd` has none: with q0 tonnes per axle, 0.7 + (3 + 0.1 k + 0.0025 k^2) / q0 newtons per kilonewton above 6 t, else
+/// 1.0 + 0.044 k + 0.00024 k^2. [S] (maisvendoo/train, after the Russian traction rules)
+struct PropulsionResistanceParams {
+  double constant_n_per_kn = kRequired;        ///< a
+  double linear_n_per_kn_kmh = kRequired;      ///< b
+  double quadratic_n_per_kn_kmh2 = kRequired;  ///< c
+  PropulsionResistanceLaw law = PropulsionResistanceLaw::kAbc;
+  CnResistanceParams cn = {};
+  ModifiedDavisParams modified_davis = {};
+  StrahlParams strahl = {};
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Choice("law", law,
+             {{"abc", PropulsionResistanceLaw::kAbc},
+              {"cn", PropulsionResistanceLaw::kCn},
+              {"modified_davis", PropulsionResistanceLaw::kModifiedDavis},
+              {"szd", PropulsionResistanceLaw::kSzd},
+              {"strahl", PropulsionResistanceLaw::kStrahl}});
+    if (law == PropulsionResistanceLaw::kAbc) {
+      v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative);
+      v.Number("linear_n_per_kn_kmh", linear_n_per_kn_kmh, kNonNegative);
+      v.Number("quadratic_n_per_kn_kmh2", quadratic_n_per_kn_kmh2, kNonNegative);
+    }
+    if (law == PropulsionResistanceLaw::kCn) v.Group("cn", cn);
+    if (law == PropulsionResistanceLaw::kModifiedDavis) v.Group("modified_davis", modified_davis);
+    if (law == PropulsionResistanceLaw::kStrahl) v.Group("strahl", strahl);
+  }
+};
+
+/// The law of a vehicle as coefficients of its speed. Weights are m g with g = 9.81 m/s^2.
+/// @param mass_kg  of the whole vehicle, > 0
+/// @param axles    > 0
+ResistanceCoefficients CoefficientsOf(const PropulsionResistanceParams& p, double mass_kg, int axles);
 
 /// Resistance that arises at wheels and bearings [N], even in the speed; opposes motion, set-valued at rest.
 ///
 ///   R_w = W (a + b v) / 1000,  v in km/h, W the weight [N]   (the first two terms of paper Eq 5)
 template <class T>
-T RollingResistance(const PropulsionResistanceParams& p, double weight_n, T speed) {
+T RollingResistance(const ResistanceCoefficients& p, double weight_n, T speed) {
   const double weight_kn = 1e-3 * weight_n;
   return weight_kn * (p.constant_n_per_kn + p.linear_n_per_kn_kmh * (3.6 * Abs(speed)));
 }
@@ -33,7 +113,7 @@ T RollingResistance(const PropulsionResistanceParams& p, double weight_n, T spee
 ///
 ///   R_a = W c v^2 / 1000,  v in km/h, W the weight [N]   (the third term of paper Eq 5)
 template <class T>
-T AirDrag(const PropulsionResistanceParams& p, double weight_n, T speed) {
+T AirDrag(const ResistanceCoefficients& p, double weight_n, T speed) {
   const double weight_kn = 1e-3 * weight_n;
   const T v_kmh = 3.6 * speed;
   return weight_kn * p.quadratic_n_per_kn_kmh2 * (v_kmh * v_kmh);

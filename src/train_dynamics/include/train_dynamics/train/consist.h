@@ -25,7 +25,8 @@ struct ConsistGroupParams {
   ConnectionParams unit_connection;                        ///< within a unit
   std::optional<VehicleModel> model = std::nullopt;        ///< none: that of the scenario
   std::optional<double> initial_speed_kmh = std::nullopt;  ///< none: that of the scenario
-  bool locomotive = false;                                 ///< the vehicles are locomotives: shown as such
+  double command_delay_s = 0.0;  ///< of the driver's commands on their way to locomotives of the group
+  bool locomotive = false;       ///< the vehicles are shown as locomotives; those with traction are, anyway
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -38,6 +39,7 @@ struct ConsistGroupParams {
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Integer("count", count, Range{1, 100000, false, false});
     v.Flag("locomotive", locomotive);
+    v.Number("command_delay_s", command_delay_s, kNonNegative);
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
     if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
@@ -78,6 +80,7 @@ struct Consist {
   std::vector<VehicleParams> vehicle_types;  ///< one of each group, in their order
   std::vector<int> vehicle_type;             ///< [vehicle] index into vehicle_types and TrainParams::consist
   std::vector<int> locomotives;              ///< indices of vehicles, ascending
+  std::vector<double> command_delay_s;       ///< [type of vehicle]
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

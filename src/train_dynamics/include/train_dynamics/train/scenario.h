@@ -8,6 +8,7 @@
 #include "train_dynamics/judgement.h"
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/train/consist.h"
+#include "train_dynamics/train/locomotive_command.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 #include "train_dynamics/vehicle/vehicle_model.h"
 #include "train_dynamics/vehicle_number.h"
@@ -25,6 +26,7 @@ struct ScenarioParams {
       pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
   std::optional<BrakeSystemParams> brake;  ///< computes the pressures from the driver's commands
   std::vector<BrakeCommand> commands;
+  std::vector<LocomotiveCommand> locomotive_commands;
   double initial_speed_kmh = kRequired;
   double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
   SlackState initial_slack = SlackState::kStretched;
@@ -47,6 +49,7 @@ struct ScenarioParams {
     v.Text("pressure_table", pressure_table);
     v.Part("brake", brake, "brakes");
     v.List("commands", commands);
+    v.List("locomotive_commands", locomotive_commands);
     v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Number("start_position_m", start_position_m, kFinite);

@@ -36,6 +36,7 @@ struct TrainCheckpoint {
   std::vector<StateRow> vehicles;   ///< [vehicle], see VehicleBlock::Save
   std::vector<double> connections;  ///< InTrainForces::Memory
   std::vector<double> brake;        ///< BrakeSystem::ForEachField
+  std::vector<double> locomotives;  ///< Locomotives::ForEachField
   std::vector<double> summary;      ///< RunSummary::Memory
   Bytes output;                     ///< what the recorders of the run need to go on
 };

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/train/curving_loads.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
+#include "train_dynamics/train/locomotives.h"
 #include "train_dynamics/train/scenario.h"
 #include "train_dynamics/train/snapshot.h"
 
@@ -71,6 +73,8 @@ class TrainMaster {
   /// When this run began: later than 0 if it was resumed.
   double start_s() const { return static_cast<double>(first_exchange_) * scenario_.exchange_interval_s; }
   const InTrainForces& in_train_forces() const { return forces_; }
+  Locomotives& locomotives() { return locomotives_; }
+  const Locomotives& locomotives() const { return locomotives_; }
   std::uint64_t state_digest() const { return digest_; }
 
  private:
@@ -82,6 +86,8 @@ class TrainMaster {
   Transport& transport_;
   BrakeSystem brake_;
   InTrainForces forces_;
+  Locomotives locomotives_;
+  CurvingLoads curves_;
   bool can_part_ = false;
   std::size_t opened_pipes_ = 0;
   std::uint64_t exchange_ = 0, first_exchange_ = 0;

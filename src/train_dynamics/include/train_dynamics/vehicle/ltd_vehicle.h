@@ -13,14 +13,16 @@
 
 namespace train_dynamics {
 
-/// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2; of a vehicle that is
-/// one mass as given.
+/// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2, and
+/// n_driven J_drive / r^2 of a locomotive's drives; of a vehicle that is one mass as given.
 ///
 /// Enters the inertia only, never weight, resistance or the force of the grade.
 inline double EquivalentRotationalMass(const VehicleParams& p) {
   if (p.IsOneMass()) return p.rotating_mass_kg;
   const double r2 = p.wheelset.wheel_radius_m * p.wheelset.wheel_radius_m;
-  return p.Wheelsets() * p.wheelset.pitch_inertia_kgm2 / r2;
+  const double of_wheelsets = p.Wheelsets() * p.wheelset.pitch_inertia_kgm2 / r2;
+  return p.traction ? of_wheelsets + p.traction->DrivenOf(p.Wheelsets()) * p.traction->drive_inertia_kgm2 / r2
+                    : of_wheelsets;
 }
 
 /// How the one degree of freedom is stepped.
@@ -64,8 +66,8 @@ struct LtdVehicle {
   /// Of the state as an array of numbers: x_m and v_mps.
   static constexpr std::array<int, 2> kDigestedFields = {1, 2};
 
-  BrakeRiggingParams brake_rigging;
-  PropulsionResistanceParams propulsion_resistance;
+  BrakeRigging brake_rigging;
+  ResistanceCoefficients propulsion_resistance;
   double weight_n;    ///< m g
   double inertia_kg;  ///< m, or m + m_e
   LtdIntegrator integrator;
@@ -133,14 +135,14 @@ void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T
   const T gravity = -vehicle.weight_n * GradeUnder(track, s.origin_m + s.x_m);
   T shoes = ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
   T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
-  T dynamic_brake = loads.dynamic_brake_n, curving = loads.curving_resistance_n, traction = loads.traction_n;
+  T dynamic_brake = loads.dynamic_brake_n, traction = loads.traction_n;
+  const T curving = loads.curving_resistance_n;  // at the flanges: it takes nothing of the adhesion
   if (vehicle.adhesion_limit) {
     const T most = vehicle.limit_n * RailSurfaceUnder(track, s.origin_m + s.x_m, vehicle.adhesion).friction;
-    const T share = Min(T(1.0), most / Max(T(1e-300), shoes + dynamic_brake + rolling + curving));
+    const T share = Min(T(1.0), most / Max(T(1e-300), shoes + dynamic_brake + rolling));
     shoes = share * shoes;
     rolling = share * rolling;
     dynamic_brake = share * dynamic_brake;
-    curving = share * curving;
     traction = Clamp(traction, -most, most);
   }
   const T drag = AirDrag(vehicle.propulsion_resistance, vehicle.weight_n, v0);

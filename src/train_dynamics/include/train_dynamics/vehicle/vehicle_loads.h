@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -36,6 +37,8 @@ struct VehicleLoads {
   /// Of the cylinder of each wheelset [Pa], where the vehicle's wheel-slide protection has them apart; null:
   /// cylinder_pressure_pa on all.
   const std::array<T, kMostWheelsets>* wheelset_pressure_pa = nullptr;
+  /// Share of the traction that slip control leaves each wheelset [-]; null: all of it.
+  const std::array<T, kMostWheelsets>* traction_share = nullptr;
 };
 
 /// Those on a row of vehicles.
@@ -52,6 +55,7 @@ struct LoadPlaces {
   TRAIN_DYNAMICS_VEHICLE_LOADS(TRAIN_DYNAMICS_POINTER)
   /// VehicleLoads::wheelset_pressure_pa, as [pack][kMostWheelsets][lane of the kernels]; not from the master
   const double* wheelset_pressure_pa = nullptr;
+  const double* traction_share = nullptr;  ///< likewise
 };
 
 #undef TRAIN_DYNAMICS_VALUE
@@ -117,6 +121,19 @@ inline LoadPlaces PlacesOf(const LoadArrays& arrays, std::size_t at) {
   ForEachLoad([at](const LoadInfo&, const auto& array,
                    auto& place) { place = array.empty() ? nullptr : array.data() + at; },
               arrays, places);
+  return places;
+}
+
+/// The places of the vehicles [at, at + count); null, too, for a load that few trains have and that acts on none of
+/// these: they are stepped faster without it.
+inline LoadPlaces PlacesOfThoseThatAct(const LoadArrays& arrays, std::size_t at, std::size_t count) {
+  LoadPlaces places = PlacesOf(arrays, at);
+  ForEachLoad(
+      [count](const LoadInfo& load, const double*& place) {
+        if (load.given == Given::kAlways || place == nullptr) return;
+        if (std::all_of(place, place + count, [](double value) { return value == 0.0; })) place = nullptr;
+      },
+      places);
   return places;
 }
 

@@ -8,12 +8,14 @@
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/normal_contact.h"
 #include "train_dynamics/contact/polach.h"
+#include "train_dynamics/resistance/curving.h"
 #include "train_dynamics/resistance/propulsion.h"
 #include "train_dynamics/slide_protection/slide_protection.h"
 #include "train_dynamics/spring/linear_spring_damper.h"
 #include "train_dynamics/suspension/centre_plate.h"
 #include "train_dynamics/suspension/friction_wedge.h"
 #include "train_dynamics/suspension/spring_nest.h"
+#include "train_dynamics/traction/locomotive.h"
 
 namespace train_dynamics {
 
@@ -116,6 +118,8 @@ struct VehicleParams {
   std::optional<SlideProtectionParams>
       wheel_slide_protection;  ///< not given: the vehicle has none (2D model)
   PropulsionResistanceParams propulsion_resistance;
+  CurvingResistanceParams curving_resistance;
+  std::optional<TractionParams> traction;  ///< given: the vehicle is a locomotive
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -135,6 +139,11 @@ struct VehicleParams {
     v.Group("brake_rigging", brake_rigging);
     v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection");
     v.Group("propulsion_resistance", propulsion_resistance);
+    v.Group("curving_resistance", curving_resistance);
+    v.Part("traction", traction, "traction");
+    v.Check(
+        !traction || traction->driven_wheelsets.empty() || traction->driven_wheelsets.back() <= Wheelsets(),
+        "traction.driven_wheelsets", "must name wheelsets that the vehicle has", {"traction"});
   }
 
   bool IsOneMass() const { return mass_kg.has_value(); }
@@ -163,6 +172,19 @@ struct VehicleParams {
            2.0 * bogie_frame.mass_kg + Wheelsets() * wheelset.mass_kg;
   }
   double Weight() const { return kGravity * TotalMass(); }  ///< [N]
+  BrakeRigging Rigging() const { return {brake_rigging, TotalMass(), Weight()}; }
+  ResistanceCoefficients Resistance() const {
+    return CoefficientsOf(propulsion_resistance, TotalMass(), Wheelsets());
+  }
+  /// On the driven wheels [N].
+  double DrivenWeight() const {
+    return traction ? Weight() * traction->DrivenOf(Wheelsets()) / Wheelsets() : 0.0;
+  }
+  /// Pitch inertia of a wheelset with what its drive adds [kg m^2]. @param i  from 0
+  double PitchInertia(int i) const {
+    const bool driven = traction && traction->Drives(i);
+    return driven ? wheelset.pitch_inertia_kgm2 + traction->drive_inertia_kgm2 : wheelset.pitch_inertia_kgm2;
+  }
 
  private:
   /// The keys of the 2D model.

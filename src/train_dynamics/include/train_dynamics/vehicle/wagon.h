@@ -148,13 +148,20 @@ struct BogieVehicle {
   double plate_carbody_arm_m, plate_bolster_arm_m;  ///< heights of the centre plate over the CGs
   double coupler_arm_m;                             ///< height of the couplers over the carbody's CG
   double weight_n;
+  BrakeRigging rigging;
+  ResistanceCoefficients resistance;
   double creep_stiffness;  ///< see CreepStiffness
-  RollingInertia rolling;
+  RollingInertia rolling;  ///< of the first wheelset
+  RollingInertias<kWheelsets> rolling_of_each;
+  bool some_driven;                       ///< some wheelsets have drives and others have not
+  std::array<double, kWheelsets> driven;  ///< 1 or 0; 1 for all of a vehicle without traction
+  double driven_share;                    ///< of one of them in traction and dynamic brake
 
-  /// Whether no torque on a wheelset reacts on the vehicle and no nest has a damper, as in the paper's wagon.
+  /// Whether no torque on a wheelset reacts on the vehicle, no nest has a damper, no wheelset a drive, and the shoes are
+  /// plain, as in the paper's wagon.
   bool IsPlain() const {
     return params.brake_rigging.reaction == BrakeReaction::kNone &&
-           params.spring_nest.damping_ns_per_m == 0.0;
+           params.spring_nest.damping_ns_per_m == 0.0 && !params.traction && rigging.is_plain;
   }
 };
 

@@ -26,7 +26,8 @@ void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const V
 
 /// The same, compiled for a kind of vehicle.
 /// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) and a plain track (Track::IsPlain) do not
-///               have; on these the bits are the same and the time is less
+///               have, and the loads that few trains have (Given::kWhereUsed); without these the bits are the same and
+///               the time is less
 template <bool kAll, class T, int kPerBogie>
 void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                    double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
@@ -132,14 +133,17 @@ void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& forc
 /// What acts on the wagon from outside in a step.
 template <class T>
 struct OuterForces {
-  T grade;                            ///< of the track [-]
-  T coupler;                          ///< of both couplers together, forward positive [N]
-  T drag;                             ///< of the air on the carbody, backwards positive [N]
-  T shoe_load;                        ///< normal load of the shoes of one wheelset [N], >= 0
-  T shoes;                            ///< their largest friction at the vehicle's speed [N], >= 0
-  T rolling, dynamic_brake, curving;  ///< largest retarding forces at one wheelset [N], >= 0
-  T traction;                         ///< at one wheelset, forward positive [N]
-  const std::array<T, kMostWheelsets>* wheelset_pressure;  ///< see VehicleLoads
+  T grade;              ///< of the track [-]
+  T coupler;            ///< of both couplers together, forward positive [N]
+  T drag;               ///< of the air on the carbody, backwards positive [N]
+  T shoe_load;          ///< normal load of the shoes of one wheelset [N], >= 0
+  T shoes;              ///< their largest friction at the vehicle's speed [N], >= 0
+  T rolling;            ///< largest resistance at one wheelset [N], >= 0
+  T curving;            ///< the same of curves, on the wheelset's centre [N], >= 0
+  T dynamic_brake;      ///< largest at one driven wheelset [N], >= 0
+  T traction;           ///< at one driven wheelset, forward positive [N]
+  T cylinder_pressure;  ///< [Pa]
+  const std::array<T, kMostWheelsets>*wheelset_pressure, *traction_share;  ///< see VehicleLoads
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
@@ -151,18 +155,20 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& trac
   OuterForces<T> outer;
   outer.grade = GradeUnder(track, s.origin_m + s.position.x[kCarbody]);
   outer.coupler = loads.front_coupler_n - loads.rear_coupler_n;
-  outer.drag = CopySign(AirDrag(p.propulsion_resistance, w.weight_n, speed), speed);
+  outer.drag = CopySign(AirDrag(w.resistance, w.weight_n, speed), speed);
   constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
-  outer.shoe_load = kShare * p.brake_rigging.shoe_load_per_pressure_n_per_pa * loads.cylinder_pressure_pa;
+  outer.shoe_load = kShare * w.rigging.load_per_pressure_n_per_pa * loads.cylinder_pressure_pa;
   outer.shoes = T(0.0);
   if (p.brake_rigging.friction_speed == FrictionSpeed::kVehicle) {
-    outer.shoes = kShare * ShoeForce(p.brake_rigging, loads.cylinder_pressure_pa, speed);
+    outer.shoes = kShare * ShoeForce(w.rigging, loads.cylinder_pressure_pa, speed);
   }
-  outer.rolling = kShare * RollingResistance(p.propulsion_resistance, w.weight_n, speed);
-  outer.dynamic_brake = kShare * loads.dynamic_brake_n;
+  outer.rolling = kShare * RollingResistance(w.resistance, w.weight_n, speed);
   outer.curving = kShare * loads.curving_resistance_n;
-  outer.traction = kShare * loads.traction_n;
+  outer.dynamic_brake = w.driven_share * loads.dynamic_brake_n;
+  outer.traction = w.driven_share * loads.traction_n;
+  outer.cylinder_pressure = loads.cylinder_pressure_pa;
   outer.wheelset_pressure = loads.wheelset_pressure_pa;
+  outer.traction_share = loads.traction_share;
   return outer;
 }
 
@@ -186,24 +192,18 @@ struct ShoeForces {
   std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels that stand, >= turning
 };
 
-/// The same where each wheelset has a cylinder pressure of its own.
+/// The same by any rigging and law of friction, and where each wheelset has a cylinder pressure of its own.
 template <class T, int kPerBogie>
 [[gnu::noinline, gnu::flatten]] ShoeForces<T, kPerBogie> ShoeForcesOfCylinders(
     const BogieVehicle<kPerBogie>& w, const std::array<T, kMostWheelsets>& pressure,
     const BodyVector<T, kPerBogie>& v0) {
-  const BrakeRiggingParams& rigging = w.params.brake_rigging;
-  const double share = rigging.shoe_load_per_pressure_n_per_pa / kWheelsetsOf<kPerBogie>;
+  constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
+  const bool by_vehicle = w.params.brake_rigging.friction_speed == FrictionSpeed::kVehicle;
   ShoeForces<T, kPerBogie> shoes;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
-    const T load = share * pressure[i];
-    if (rigging.friction_speed == FrictionSpeed::kVehicle) {
-      shoes.turning[i] = load * ShoeFriction(rigging.shoe_friction, v0.x[kCarbody]);
-      shoes.standing[i] = shoes.turning[i];
-    } else {
-      shoes.turning[i] =
-          load * ShoeFriction(rigging.shoe_friction, w.rolling.radius_m * v0.pitch[kWheelset1 + i]);
-      shoes.standing[i] = load * rigging.shoe_friction.standstill_friction_coefficient;
-    }
+    const T speed = by_vehicle ? v0.x[kCarbody] : w.rolling.radius_m * v0.pitch[kWheelset1 + i];
+    shoes.turning[i] = kShare * ShoeForce(w.rigging, pressure[i], speed);
+    shoes.standing[i] = by_vehicle ? shoes.turning[i] : kShare * ShoeForce(w.rigging, pressure[i], T(0.0));
   }
   return shoes;
 }
@@ -212,6 +212,11 @@ template <class T, int kPerBogie>
 ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                                       const BodyVector<T, kPerBogie>& v0) {
   if (outer.wheelset_pressure != nullptr) return ShoeForcesOfCylinders(w, *outer.wheelset_pressure, v0);
+  if (!w.rigging.is_plain) {
+    std::array<T, kMostWheelsets> pressure;
+    pressure.fill(outer.cylinder_pressure);
+    return ShoeForcesOfCylinders(w, pressure, v0);
+  }
   const BrakeRiggingParams& rigging = w.params.brake_rigging;
   ShoeForces<T, kPerBogie> shoes;
   if (rigging.friction_speed == FrictionSpeed::kVehicle) {
@@ -235,16 +240,17 @@ struct WheelsetStep {
   std::array<T, kWheelsetsOf<kPerBogie>> mobilised;
   std::array<T, kWheelsetsOf<kPerBogie>> path;          ///< at the tread, of the rotation [m]
   std::array<T, kWheelsetsOf<kPerBogie>> creep, brake;  ///< energy lost in creep; work on the rail [J]
-  T contact{};                                          ///< energy lost in the contacts' dampers [J]
+  std::array<T, kWheelsetsOf<kPerBogie>> traction{};    ///< at the tread, forward positive [N]
+  T contact{}, curving{};  ///< energy lost in the contacts' dampers and to curves [J]
 };
 
 /// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
 /// @param shape_of  what the law of a surface takes beside mu0: of one surface for all lanes, or by lane
-template <class T, int kPerBogie, class ShapeOf>
+template <class T, int kPerBogie, class Inertia, class ShapeOf>
 std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
     const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
     const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
-    const BodyVector<T, kPerBogie>& v0, const ShapeOf& shape_of) {
+    const BodyVector<T, kPerBogie>& v0, const Inertia& inertia, const ShapeOf& shape_of) {
   using Law = decltype(FreezeCreepLaw(shape_of(rail.surface[0]), 0.0, T(), T(), T(), 0.0));
   std::array<Law, kWheelsetsOf<kPerBogie>> law;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -252,22 +258,23 @@ std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
     law[i] = FreezeCreepLaw(shape_of(surface), w.creep_stiffness, rail.normal[i], surface.friction,
                             v0.x[kWheelset1 + i], w.params.wheel_rail.creepage_regularisation_speed_mps);
   }
-  return StepRolling(w.rolling, law, rolling, dt);
+  return StepRolling(inertia, law, rolling, dt);
 }
 
-/// RollOn where vehicles side by side meet different surfaces. A function of its own, so that the step of all
-/// others does not grow.
+/// RollOn where vehicles side by side meet different surfaces, or some wheelsets have drives. A function of its own, so
+/// that the step of all others does not grow.
 template <class T, int kPerBogie>
-[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixedSurfaces(
+[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixed(
     const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
     const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
     const BodyVector<T, kPerBogie>& v0) {
-  return RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) { return ShapeOf(surface); });
+  return RollOn(w, rail, rolling, dt, v0, w.rolling_of_each,
+                [](const RailSurface<T>& surface) { return ShapeOf(surface); });
 }
 
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
                                          const RailForces<T, kPerBogie>& rail, const OuterForces<T>& outer,
                                          const BodyVector<T, kPerBogie>& force, double dt,
@@ -279,20 +286,30 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
   WheelsetStep<T, kPerBogie> step;
   step.shoes = ShoeForcesOn(w, outer, v0);
   std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>> rolling;
-  bool mixed = false;
+  std::array<T, kWheelsetsOf<kPerBogie>> curving{};  // backwards positive
+  bool mixed = kAll && w.some_driven;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     mixed |= rail.surface[i].adhesion == nullptr;
-    const T push = force.x[b] - rail.normal[i] * rail.slope[i];
-    rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * outer.traction,
-                  r * (step.shoes.turning[i] + outer.rolling + outer.dynamic_brake + outer.curving),
-                  r * (step.shoes.standing[i] + outer.rolling + outer.dynamic_brake + outer.curving)};
+    T push = force.x[b] - rail.normal[i] * rail.slope[i];
+    T traction = outer.traction, others = outer.rolling + outer.dynamic_brake;
+    if (kAll) {
+      // Set-valued at rest: what would bring the wheelset, the creep force aside, to a stand, as far as it goes.
+      curving[i] = Clamp(w.mass_kg[b] * (1.0 / dt) * v0.x[b] + push, -outer.curving, outer.curving);
+      push = push - curving[i];
+      traction = w.driven[i] * outer.traction;
+      if (outer.traction_share != nullptr) traction = (*outer.traction_share)[i] * traction;
+      step.traction[i] = traction;
+      others = outer.rolling + w.driven[i] * outer.dynamic_brake;
+    }
+    rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * traction,
+                  r * (step.shoes.turning[i] + others), r * (step.shoes.standing[i] + others)};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
-      mixed ? RollOnMixedSurfaces(w, rail, rolling, dt, v0)
-            : RollOn(w, rail, rolling, dt, v0, [](const RailSurface<T>& surface) -> const AdhesionParams& {
-                return *surface.adhesion;
-              });
+      mixed
+          ? RollOnMixed(w, rail, rolling, dt, v0)
+          : RollOn(w, rail, rolling, dt, v0, w.rolling,
+                   [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
 
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
@@ -309,6 +326,7 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
     step.brake[i] = out.creep_force * moved;
     step.creep[i] = out.creep_force * (moved - step.path[i]);
     step.contact = step.contact + rail.damping[i] * (rail.slope[i] * moved - lifted);
+    if (kAll) step.curving = step.curving + curving[i] * moved;
     if (output != nullptr) {
       output->normal_force_n[i] = rail.normal[i];
       output->creep_force_n[i] = out.creep_force;
@@ -323,8 +341,8 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
 ///
 ///   M_frame += r [ mobilised (S + R + F_db) - F_t ]   over the wheelsets of the bogie, nose down positive
 ///
-/// S, the shoes' friction, on the carbody where they hang on it. Curving resistance comes from the rail and
-/// reacts on no body.
+/// S, the shoes' friction, on the carbody where they hang on it. Traction F_t and dynamic brake F_db are those of the
+/// driven wheelsets. Curving resistance is a force on the wheelsets' centres and reacts on no body.
 template <class T, int kPerBogie>
 void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                   const WheelsetStep<T, kPerBogie>& wheelsets, BodyVector<T, kPerBogie>& force) {
@@ -335,7 +353,8 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
     T shoes(0.0), others(0.0);
     for (int i = kPerBogie * bogie; i < kPerBogie * (bogie + 1); ++i) {
       shoes = shoes + wheelsets.mobilised[i] * wheelsets.shoes.turning[i];
-      others = others + (wheelsets.mobilised[i] * (outer.rolling + outer.dynamic_brake) - outer.traction);
+      others = others + (wheelsets.mobilised[i] * (outer.rolling + w.driven[i] * outer.dynamic_brake) -
+                         wheelsets.traction[i]);
     }
     const int frame = kFrontFrame + bogie;
     const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
@@ -362,21 +381,25 @@ void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
       of_shoes[i] = reaction == BrakeReaction::kFrame ? of_frame[i] : wheelsets.path[i] - carbody;
     }
   }
-  T shoes(0.0), rail_path(0.0), bearing_path(0.0), traction_path(0.0);
+  T shoes(0.0), bearing_path(0.0), braked_path(0.0), traction(0.0);
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     shoes = shoes + wheelsets.shoes.turning[i] * (wheelsets.mobilised[i] * of_shoes[i]);
     bearing_path = bearing_path + wheelsets.mobilised[i] * of_frame[i];
-    rail_path = rail_path + wheelsets.mobilised[i] * wheelsets.path[i];
-    traction_path = traction_path + of_frame[i];
+    if (kAll) {
+      braked_path = braked_path + w.driven[i] * (wheelsets.mobilised[i] * of_frame[i]);
+      traction = traction + wheelsets.traction[i] * of_frame[i];
+    }
   }
   const auto book = [&work](Dissipation element, const T& energy) {
     work.dissipated[element] = work.dissipated[element] + energy;
   };
   book(kBrakeShoes, shoes);
-  book(kDynamicBrake, outer.dynamic_brake * bearing_path);
   book(kRollingResistance, outer.rolling * bearing_path);
-  book(kCurvingResistance, outer.curving * rail_path);
-  work.traction = work.traction + outer.traction * traction_path;
+  if (kAll) {
+    book(kDynamicBrake, outer.dynamic_brake * braked_path);
+    book(kCurvingResistance, wheelsets.curving);
+    work.traction = work.traction + traction;
+  }
 }
 
 /// Books the work of a step but for the torques: force x mean rate x dt, element by element.
@@ -445,7 +468,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   AddElementForces(w, dissipative, force);
   AddOuterForces(w, outer, force);
 
-  const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets(w, rail, outer, force, dt, v0, v1, output);
+  const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets<kAll>(w, rail, outer, force, dt, v0, v1, output);
   if (kAll) AddReactions(w, outer, wheelsets, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
@@ -472,8 +495,11 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
 template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
                WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
-  const auto step = w.IsPlain() && track.IsPlain() ? &StepWagonWith<false, T, kPerBogie>
-                                                   : &StepWagonWith<true, T, kPerBogie>;
+  const T zero(0.0);
+  const bool has_rare_loads = AnyOf(loads.traction_n != zero) || AnyOf(loads.dynamic_brake_n != zero) ||
+                              AnyOf(loads.curving_resistance_n != zero);
+  const bool is_plain = w.IsPlain() && track.IsPlain() && !has_rare_loads;
+  const auto step = is_plain ? &StepWagonWith<false, T, kPerBogie> : &StepWagonWith<true, T, kPerBogie>;
   step(w, track, loads, dt, s, output);
 }
 

@@ -27,9 +27,20 @@ struct RollingResult {
   T brake_torque;  ///< T [Nm], acts against positive rotation; |T| <= the largest of its state
 };
 
-/// Mass properties of a wheelset.
+/// Mass properties of equal wheelsets.
 struct RollingInertia {
   double radius_m, inv_mass_per_kg, inv_inertia_per_kgm2;
+
+  double InvInertia(std::size_t /*wheelset*/) const { return inv_inertia_per_kgm2; }
+};
+
+/// The same where drives add to the inertia of some.
+template <std::size_t kCount>
+struct RollingInertias {
+  double radius_m, inv_mass_per_kg;
+  std::array<double, kCount> inv_inertia_per_kgm2;
+
+  double InvInertia(std::size_t wheelset) const { return inv_inertia_per_kgm2[wheelset]; }
 };
 
 /// Slip speed w with w + h F(w) = w0, and that F. Odd in w0.
@@ -94,13 +105,12 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
 /// T_hold >= T_max, the friction being that of standstill. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
 /// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
 /// the train's speed does not betray.
-template <class T, std::size_t kCount, class P = double>
-std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
+template <class T, std::size_t kCount, class P = double, class Inertia = RollingInertia>
+std::array<RollingResult<T>, kCount> StepRolling(const Inertia& inertia,
                                                  const std::array<CreepLaw<T, P>, kCount>& law,
                                                  const std::array<RollingInput<T>, kCount>& in, double dt) {
   const double r = inertia.radius_m;
   const double h_locked = dt * inertia.inv_mass_per_kg;
-  const double h_turning = dt * (inertia.inv_mass_per_kg + r * r * inertia.inv_inertia_per_kgm2);
 
   std::array<T, kCount>
       stopping;  // torque that would stop the wheels within this step, the creep force aside
@@ -108,9 +118,9 @@ std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
   std::array<MaskOf<T>, kCount> locked;
   bool any_locked = false;
   for (std::size_t i = 0; i < kCount; ++i) {
-    stopping[i] = in[i].spin * (1.0 / (dt * inertia.inv_inertia_per_kgm2)) + in[i].traction_torque;
+    stopping[i] = in[i].spin * (1.0 / (dt * inertia.InvInertia(i))) + in[i].traction_torque;
     torque[i] = CopySign(in[i].brake_torque, stopping[i]);
-    h[i] = T(h_turning);
+    h[i] = T(dt * (inertia.inv_mass_per_kg + r * r * inertia.InvInertia(i)));
     locked[i] = Abs(stopping[i]) <= in[i].holding_torque + r * law[i].friction_limit;
     any_locked |= AnyOf(locked[i]);
   }
@@ -127,8 +137,7 @@ std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
   }
   std::array<T, kCount> free_spin, free_slip;
   for (std::size_t i = 0; i < kCount; ++i) {
-    const T turning_spin =
-        in[i].spin + dt * inertia.inv_inertia_per_kgm2 * (in[i].traction_torque - torque[i]);
+    const T turning_spin = in[i].spin + dt * inertia.InvInertia(i) * (in[i].traction_torque - torque[i]);
     free_spin[i] = Select(locked[i], T(0.0), turning_spin);
     free_slip[i] = in[i].speed - r * free_spin[i];
   }
@@ -136,7 +145,7 @@ std::array<RollingResult<T>, kCount> StepRolling(const RollingInertia& inertia,
   std::array<RollingResult<T>, kCount> out;
   for (std::size_t i = 0; i < kCount; ++i) {
     const T force = solution[i].force;
-    const T spin = free_spin[i] + Select(locked[i], T(0.0), dt * inertia.inv_inertia_per_kgm2 * r * force);
+    const T spin = free_spin[i] + Select(locked[i], T(0.0), dt * inertia.InvInertia(i) * r * force);
     // A locked wheel's holding torque follows from the very force that acts.
     const T held = stopping[i] + r * force;
     out[i] = {in[i].speed - h_locked * force, spin, force, Select(locked[i], held, torque[i])};

@@ -53,7 +53,7 @@ inline bool IsPlain(const LtdVehicle& /*vehicle*/, const Track& /*track*/) { ret
 /// Whether a load that few trains have is given.
 template <class T>
 bool HasRareLoads(const LoadPlaces& places) {
-  bool has = places.wheelset_pressure_pa != nullptr;
+  bool has = places.wheelset_pressure_pa != nullptr || places.traction_share != nullptr;
   ForEachLoad([&has](const LoadInfo& load,
                      const double* place) { has |= load.given == Given::kWhereUsed && place != nullptr; },
               places);
@@ -95,11 +95,17 @@ template <class T, bool kAll, class Vehicle>
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
     VehicleLoads<T> loads = LoadsAt<T, kAll>(load_places, first);
-    std::array<T, kMostWheelsets> pressure;
-    if (kAll && load_places.wheelset_pressure_pa != nullptr) {
-      const double* at = load_places.wheelset_pressure_pa + first * kMostWheelsets;
-      for (int j = 0; j < kMostWheelsets; ++j) pressure[j] = Load<T>(at + j * kLanesOf<T>);
-      loads.wheelset_pressure_pa = &pressure;
+    std::array<T, kMostWheelsets> pressure, traction_share;
+    const auto take = [first](const double* places, std::array<T, kMostWheelsets>& values,
+                              const std::array<T, kMostWheelsets>*& given) {
+      if (places == nullptr) return;
+      const double* at = places + first * kMostWheelsets;
+      for (int j = 0; j < kMostWheelsets; ++j) values[j] = Load<T>(at + j * kLanesOf<T>);
+      given = &values;
+    };
+    if (kAll) {
+      take(load_places.wheelset_pressure_pa, pressure, loads.wheelset_pressure_pa);
+      take(load_places.traction_share, traction_share, loads.traction_share);
     }
     for (int step = 1; step < steps; ++step) {
       Step<kAll>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "train_dynamics/judgement.h"
+#include "train_dynamics/traction/locomotive.h"
+#include "train_dynamics/train/consist.h"
+
+namespace train_dynamics {
+
+enum class LocomotiveCommandKind { kThrottle, kDynamicBrake };
+
+/// What the driver does with throttle and dynamic brake, and when. Each ends what the other has asked for.
+struct LocomotiveCommand {
+  double time_s = kRequired;
+  LocomotiveCommandKind kind = LocomotiveCommandKind::kThrottle;
+  double notch = kRequired;  ///< 0: off
+  std::vector<int>
+      vehicles;  ///< that obey: locomotives, from 1, or from -1 for the last; empty: all locomotives
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("time_s", time_s, kNonNegative);
+    v.Choice("kind", kind,
+             {{"throttle", LocomotiveCommandKind::kThrottle},
+              {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}});
+    v.Number("notch", notch, Range{0.0, 100.0, false, false});
+    v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false});
+  }
+
+  /// What the locomotives that obey are asked for from then on.
+  NotchCommand Notches() const {
+    return kind == LocomotiveCommandKind::kThrottle ? NotchCommand{notch, 0.0} : NotchCommand{0.0, notch};
+  }
+};
+
+/// Rules between commands and the train that do not hold: each vehicle named is a locomotive, and each has the notch.
+std::vector<BrokenRule> JudgeLocomotiveCommands(const std::vector<LocomotiveCommand>& commands,
+                                                const TrainParams& train);
+
+}  // namespace train_dynamics

@@ -1,0 +1,62 @@
+#include "train_dynamics/train/locomotive_command.h"
+
+#include "train_dynamics/vehicle_number.h"
+
+namespace train_dynamics {
+namespace {
+
+/// Why a locomotive cannot do what a command asks for; empty: it can.
+std::string WhyNot(const LocomotiveCommand& command, const TractionParams& traction) {
+  if (command.kind == LocomotiveCommandKind::kDynamicBrake) {
+    if (!traction.dynamic_brake) return "must be throttle for a locomotive without dynamic_brake";
+    if (command.notch <= traction.dynamic_brake->Notches()) return "";
+    return "must be at most " + std::to_string(traction.dynamic_brake->Notches()) +
+           ", the highest notch of a dynamic brake of this train";
+  }
+  const int notches = traction.tractive_effort.throttle.Notches();
+  if (command.notch <= notches) return "";
+  return "must be at most " + std::to_string(notches) + ", the highest notch of a throttle of this train";
+}
+
+}  // namespace
+
+std::vector<BrokenRule> JudgeLocomotiveCommands(const std::vector<LocomotiveCommand>& commands,
+                                                const TrainParams& train) {
+  std::vector<BrokenRule> broken;
+  const int count = train.VehicleCount();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const LocomotiveCommand& command = commands[i];
+    const std::string key = "locomotive_commands[" + std::to_string(i) + "]";
+    std::vector<const TractionParams*> obey;
+    for (std::size_t j = 0; j < command.vehicles.size(); ++j) {
+      const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
+      const int vehicle = VehicleIndex(command.vehicles[j], count);
+      if (vehicle < 0) {
+        broken.push_back({entry, VehicleRule(count), {"train"}});
+      } else if (!train.VehicleAt(vehicle).traction) {
+        broken.push_back({entry, "must be a locomotive: a vehicle with traction", {"train"}});
+      } else {
+        obey.push_back(&*train.VehicleAt(vehicle).traction);
+      }
+    }
+    if (command.vehicles.empty()) {
+      for (const ConsistGroupParams& group : train.consist) {
+        if (group.vehicle.traction) obey.push_back(&*group.vehicle.traction);
+      }
+      if (obey.empty()) {
+        broken.push_back(
+            {key, "must not be given for a train without a locomotive: no vehicle has traction", {"train"}});
+      }
+    }
+    for (const TractionParams* traction : obey) {
+      const std::string why_not = WhyNot(command, *traction);
+      if (why_not.empty()) continue;
+      const bool is_kind = why_not.find("throttle for") != std::string::npos;
+      broken.push_back({key + (is_kind ? ".kind" : ".notch"), why_not, {"train"}});
+      break;
+    }
+  }
+  return broken;
+}
+
+}  // namespace train_dynamics
