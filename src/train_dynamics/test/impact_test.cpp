@@ -111,7 +111,7 @@ double Peak(double speed_kmh, std::vector<std::string> overrides) {
 
 TEST(Impact, GearsAreUsedUpAtTheSpeedOfTheirEnergy) {
   // v = sqrt(8 E / m), E per gear. [O] TF-880, 61.72 kJ: 7.02 km/h; a gear of 36 000 ft-lb (48.81 kJ): 6.25 km/h. There the
-  // gear is at the end of its travel, and a tenth faster it is solid. (Forces within 1 %: the slack's run-in and steps of 1 ms.)
+  // gear is at the end of its travel, and a tenth faster it is solid.
   const double tf880_n = 2.52e6;
   EXPECT_NEAR(Peak(7.02, {"train.connection=tf880"}), tf880_n, 0.015 * tf880_n);
   EXPECT_GT(Peak(1.1 * 7.02, {"train.connection=tf880"}), 1.1 * tf880_n);
