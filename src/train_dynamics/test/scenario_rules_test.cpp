@@ -507,7 +507,7 @@ TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
   Put("scenarios/a.yaml",
       "base: single_wagon_stop\nmodel: ltd-no-inertia\ntrack:\n  base: level\n"
       "  friction_patches:\n  - {from_m: 1, to_m: 2, friction_coefficient: 0.1}\n"
-      "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\n");
+      "  - {from_m: 3, to_m: 4, friction_coefficient: 0.1}\nadhesion_limit: false\n");
   EXPECT_EQ(WarningsOf("a"),
             "scenarios/a.yaml:6: the ltd-no-inertia model leaves out track.friction_patches (2 entries)");
 }
