@@ -13,12 +13,16 @@ namespace train_dynamics {
 namespace {
 
 constexpr double kLookEvery = 0.5;  ///< [m]
+/// What no train does, but a damaged checkpoint may say [m]: a way between two looks, the length of the track.
+constexpr double kLongestWay = 1e5, kLongestTrack = 1e7;
 
 /// Adds work that was done evenly over a way to the metres that it covers.
 void Spread(double from_m, double to_m, double creep_j, double brake_j, TrackWork& track) {
   if (from_m > to_m) std::swap(from_m, to_m);
+  if (!(to_m - from_m < kLongestWay) || !(std::abs(from_m) < 1e15)) return;
   const long first = std::lround(std::floor(from_m)), last = std::lround(std::floor(to_m));
   if (track.creep_j.empty()) track.from_m = first;
+  if (static_cast<double>(std::abs(first - track.from_m)) > kLongestTrack) return;
   if (first < track.from_m) {
     // Room for what comes, not only for this metre: trains go on in their direction.
     const long before = track.from_m - first + 1000;
