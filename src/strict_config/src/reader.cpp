@@ -359,6 +359,7 @@ std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, cons
     return std::nullopt;
   }
   std::vector<Place> places;
+  places.reserve(size);
   for (std::size_t i = 0; i < size; ++i) {
     const Value item = Item(*list, i);
     places.push_back(kind ? PartPlace(item, kind) : MapPlace(item));
