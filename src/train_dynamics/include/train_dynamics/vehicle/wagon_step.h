@@ -78,6 +78,13 @@ RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const T
   return rail;
 }
 
+/// ContactForces on any track. A function of its own: its look-ups would take registers from the rest of the step.
+template <class T, int kPerBogie>
+[[gnu::noinline, gnu::flatten]] RailForces<T, kPerBogie> ContactForcesOnAnyTrack(
+    const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<T, kPerBogie>& s) {
+  return ContactForces<true>(w, track, s);
+}
+
 /// Friction forces of the wedges of all bogies that bring their relative rates to rest or reach their bounds.
 ///
 /// Per bogie, with the compression rates c* that the wedges would have at the end of the step without
@@ -461,7 +468,8 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   const ElementVector<T, kPerBogie> rate0 = ElementsOf(w, v0);
   const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
   ElementVector<T, kPerBogie> dissipative = DampingForces<kAll>(w, deflection, elastic, rate0);
-  const RailForces<T, kPerBogie> rail = ContactForces<kAll>(w, track, s);
+  const RailForces<T, kPerBogie> rail =
+      kAll ? ContactForcesOnAnyTrack(w, track, s) : ContactForces<false>(w, track, s);
   const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
   BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
