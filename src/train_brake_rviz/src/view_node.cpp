@@ -212,6 +212,8 @@ Snapshot ViewNode::MakeSnapshot() {
   if (forces_ != nullptr) snapshot.coupler_force_n = Doubles(forces_->coupler_force_n, vehicles - 1);
   if (pressures_ != nullptr)
     snapshot.cylinder_pressure_pa = Doubles(pressures_->cylinder_pressure_pa, vehicles);
+  if (pressures_ != nullptr && !pressures_->pipe_pressure_pa.empty())
+    snapshot.pipe_pressure_pa = Doubles(pressures_->pipe_pressure_pa, vehicles);
   const auto wagon = wagons_.find(selection_.vehicle);
   if (wagon != wagons_.end()) {
     train_dynamics::WagonDetail detail;

@@ -25,7 +25,7 @@ struct Train {
   void Run(double to_s) { brake.PressuresAt(to_s, cylinder_pa); }
   int InEmergency() const {
     int count = 0;
-    for (int i = 0; i < brake.vehicles(); ++i) count += brake.valve(i).Mode() == ValveMode::kEmergency;
+    for (int i = 0; i < brake.vehicles(); ++i) count += brake.valve(i).Mode() == ControlValveMode::kEmergency;
     return count;
   }
   double Sum() const { return std::accumulate(cylinder_pa.begin(), cylinder_pa.end(), 0.0); }
@@ -130,8 +130,8 @@ double WaveSpeed(double threshold_kpa, double vent_mm, int cells) {
   for (double t = train.brake.step_s(); t < 12.0 && fired[99] < 0.0; t += train.brake.step_s()) {
     train.Run(t);
     for (int i = 0; i < 120; ++i) {
-      const ValveState& s = train.brake.valve(i);
-      if (fired[i] < 0.0 && s.Mode() == ValveMode::kEmergency)
+      const ControlValveState& s = train.brake.valve(i);
+      if (fired[i] < 0.0 && s.Mode() == ControlValveMode::kEmergency)
         fired[i] = train.brake.time_s() - s.vent_open_s;
     }
   }
@@ -339,7 +339,7 @@ TEST(PneumaticBrake, ATwoWayEndOfTrainDeviceVentsTheTail) {
     Train train(params, 100, 13.0);
     train.brake.Command(Emergency(0.0));
     train.Run(1.5);
-    EXPECT_EQ(train.brake.valve(99).Mode() == ValveMode::kEmergency, two_way);
+    EXPECT_EQ(train.brake.valve(99).Mode() == ControlValveMode::kEmergency, two_way);
   }
 }
 

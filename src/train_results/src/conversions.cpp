@@ -50,6 +50,8 @@ void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message
 void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
   Stamp(record, message);
   Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
+  train_dynamics::ForEachBrakeField([](const char*, const auto& from, auto& to) { Copy(from, to); },
+                                    record.brake, message);
 }
 
 void Convert(const TrainRecord& record, train_brake_msgs::Slides& message) {

@@ -89,6 +89,14 @@ CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& check
   };
   check(kHistory);
   check(kPressures);
+  if (reader.Word() != 0) {
+    train_dynamics::ForEachBrakeField(
+        [&](const std::string& name, const auto&) {
+          check(name + ".csv");
+          brake_.emplace(name + ".csv", std::ofstream());
+        },
+        train_dynamics::BrakeRecordArrays());
+  }
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
     const std::uint64_t vehicle = reader.Word();
     if (vehicle >= static_cast<std::uint64_t>(vehicles)) {
@@ -107,6 +115,7 @@ void CsvRecorder::GoOn() {
   };
   history_ = go_on(kHistory);
   pressures_ = go_on(kPressures);
+  for (auto& [name, stream] : brake_) stream = go_on(name);
   for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles_));
 }
 
@@ -122,6 +131,12 @@ Bytes CsvRecorder::Checkpoint() {
   };
   add(history_, kHistory);
   add(pressures_, kPressures);
+  writer.Add(std::uint64_t{brake_.empty() ? 0u : 1u});
+  train_dynamics::ForEachBrakeField(
+      [&](const std::string& name, const auto&) {
+        if (!brake_.empty()) add(brake_.at(name + ".csv"), name + ".csv");
+      },
+      train_dynamics::BrakeRecordArrays());
   writer.Add(std::uint64_t{wagons_.size()});
   for (auto& [vehicle, stream] : wagons_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
@@ -142,14 +157,26 @@ void CsvRecorder::Record(const TrainRecord& record) {
              *std::max_element(force.begin(), force.end()), *std::min_element(force.begin(), force.end()),
              mean(record.cylinder_pressure_pa));
 
-  if (record.exchange == 0) {
-    fmt::print(pressures_, "time_s");
-    for (size_t i = 1; i <= speed.size(); ++i) fmt::print(pressures_, ",vehicle_{}_pa", i);
-    pressures_ << '\n';
+  const auto row = [&](std::ofstream& stream, const char* unit, const std::vector<double>& values) {
+    if (record.exchange == 0) {
+      fmt::print(stream, "time_s");
+      for (size_t i = 1; i <= values.size(); ++i) fmt::print(stream, ",vehicle_{}{}", i, unit);
+      stream << '\n';
+    }
+    fmt::print(stream, "{:.6f}", record.time_s);
+    Row(stream, values);
+    stream << '\n';
+  };
+  row(pressures_, "_pa", record.cylinder_pressure_pa);
+  if (!record.brake.empty()) {
+    train_dynamics::ForEachBrakeField(
+        [&](const std::string& name, const std::vector<double>& values) {
+          if (brake_.count(name + ".csv") == 0)
+            brake_.emplace(name + ".csv", Open(folder_ / (name + ".csv")));
+          row(brake_.at(name + ".csv"), name == "valve_mode" ? "" : "_pa", values);
+        },
+        record.brake);
   }
-  fmt::print(pressures_, "{:.6f}", record.time_s);
-  Row(pressures_, record.cylinder_pressure_pa);
-  pressures_ << '\n';
 
   for (const WagonDetail& detail : record.vehicles.details) {
     if (wagons_.count(detail.vehicle) == 0) OpenWagon(detail.vehicle);
@@ -193,6 +220,7 @@ void CsvRecorder::OpenWagon(int vehicle) {
 void CsvRecorder::Close() {
   WriteFile(folder_ / "vehicles.csv", VehicleTable(last_));
   for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
+  for (auto& [name, stream] : brake_) stream.flush();
   for (auto& [vehicle, stream] : wagons_) stream.flush();
   CheckAll();
 }
@@ -200,6 +228,7 @@ void CsvRecorder::Close() {
 void CsvRecorder::CheckAll() const {
   Check(history_, folder_ / kHistory);
   Check(pressures_, folder_ / kPressures);
+  for (const auto& [name, stream] : brake_) Check(stream, folder_ / name);
   for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
 }
 

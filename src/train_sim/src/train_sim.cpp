@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "strict_config/error_list.h"
+#include "train_sim/brake_commands.h"
 #include "train_sim/check_command.h"
 #include "train_sim/route_command.h"
 #include "train_sim/run_command.h"
@@ -24,6 +25,8 @@ constexpr const char* kDescription =
     "  train_sim check my_scenario.yaml\n"
     "  train_sim route my_line.csv --plot my_line.svg\n"
     "  train_sim verify results/emergency\n"
+    "  train_sim air-test config/scenarios/full_service_ab.yaml\n"
+    "  train_sim brake-weight config/scenarios/braked_weight.yaml\n"
     "  train_sim modes config/vehicles/ore_wagon.yaml\n"
     "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
     "\n"
@@ -140,6 +143,18 @@ int Main(int argc, char** argv) {
   adhesion->add_flag("--csv", table, "comma-separated");
   adhesion->callback(
       [&] { command = [&] { return train_sim::PrintAdhesion(vehicle, options.overrides, table); }; });
+
+  CLI::App* air_test = app.add_subcommand(
+      "air-test", "test the pneumatic brake of a scenario's train at rest; 1 if a test fails");
+  AddInput(air_test, "SCENARIO", "scenario file", vehicle, options.overrides);
+  air_test->callback([&] { command = [&] { return train_sim::PrintAirTest(vehicle, options.overrides); }; });
+
+  CLI::App* brake_weight = app.add_subcommand(
+      "brake-weight",
+      "braked-weight percentage of a scenario's vehicles; its train beside the model of ETCS");
+  AddInput(brake_weight, "SCENARIO", "scenario file", vehicle, options.overrides);
+  brake_weight->callback(
+      [&] { command = [&] { return train_sim::PrintBrakeWeight(vehicle, options.overrides); }; });
 
   try {
     app.parse(argc, argv);

@@ -4,7 +4,8 @@ from typing import Callable, List, Tuple, Union
 
 from train_brake_report.figure import Figure, LeftOut
 from train_brake_report.figures import (
-    brake_table, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides)
+    air_brake, brake_table, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides,
+)
 from train_brake_report.group import Group
 
 Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out)
@@ -21,6 +22,8 @@ OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
     ("Force of a coupler", couplers.draw_history),
     ("Coupler force, whole train", space_time.draw_force),
     ("Cylinder pressure, whole train", space_time.draw_pressure),
+    ("Brake pipe, whole train", space_time.draw_pipe),
+    ("Air in the brake", air_brake.draw),
     ("Brake wave", space_time.draw_wave),
     ("Wheel slip, whole train", space_time.draw_slip),
     ("Wheels that slide", wheel_slides.draw_slides),

@@ -22,6 +22,8 @@ const std::vector<Quantity>& Quantities() {
        VehicleCouplerForces},
       {"pressure", "cylinder pressure", "kPa", 1e-3, 100.0, false, "", "",
        [](const Snapshot& s) { return s.cylinder_pressure_pa; }},
+      {"pipe_pressure", "brake pipe pressure", "kPa", 1e-3, 100.0, false, "", "",
+       [](const Snapshot& s) { return s.pipe_pressure_pa; }},
       {"slip", "wheel slip", "%", 100.0, 0.05, false, "", "",
        [](const Snapshot& s) {
          std::vector<double> size = s.creepage;

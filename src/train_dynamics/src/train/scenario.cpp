@@ -403,7 +403,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   }
   if (!train.consist.empty()) WarnOfAdhesionLimit(scenario, warnings);
   if (scenario.brake && scenario.pressure_table.empty()) {
-    const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands);
+    const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands, train.VehicleCount());
     warnings.insert(warnings.end(), of_brake.begin(), of_brake.end());
   }
   if (!scenario.pressure_table.empty()) {
@@ -421,8 +421,10 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
 }
 
 BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist) {
+  std::vector<double> length_m;
+  for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   return {*scenario.brake, scenario.commands, consist.centre_m,
-          PressureGrid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()}};
+          PressureGrid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()}, length_m};
 }
 
 }  // namespace train_dynamics

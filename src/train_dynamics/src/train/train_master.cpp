@@ -146,6 +146,7 @@ void TrainMaster::ShowRecord() {
   record.held = request_;
   forces_.Extensions(record.coupler_extension_m);
   brake_.PressuresAt(time_s(), record.cylinder_pressure_pa);
+  if (const PneumaticBrake* machine = brake_.pneumatic()) machine->Record(record.brake);
   record.state_digest = digest_;
   record.ledger.reset();
   if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());

@@ -14,6 +14,8 @@ namespace train_results {
 ///
 ///   train_history.csv  mean, lead and tail speed, largest forces, mean pressure
 ///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
+///   pipe_pressure_pa.csv  auxiliary_reservoir_pa.csv  emergency_reservoir_pa.csv  valve_mode.csv
+///                      of every vehicle, where the brake has them (brake/pneumatic/brake_record.h)
 ///   wagon_NNN.csv      one per detailed vehicle
 ///   vehicles.csv       the last record of every vehicle (at the end)
 class CsvRecorder {
@@ -40,6 +42,7 @@ class CsvRecorder {
   std::filesystem::path folder_;
   int vehicles_ = 0;  ///< of the train, once a record or a checkpoint told
   std::ofstream history_, pressures_;
+  std::map<std::string, std::ofstream> brake_;  ///< by the name of the table
   std::map<int, std::ofstream> wagons_;
   std::map<std::string, train_dynamics::StreamDigest> digests_;  ///< of each table at the last checkpoint
   train_dynamics::RecordArrays last_;                            ///< the last record of the vehicles

@@ -45,6 +45,8 @@ FORCE = Quantity("coupler_force_picture", "Coupler force, whole train", "coupler
                  1e-3, True, "connection", "Orange is tension, blue compression: shocks run along the train as slanted lines.")
 PRESSURE = Quantity("pressure_picture", "Cylinder pressure, whole train", "cylinder pressure [kPa]", "pressures",
                     "cylinder_pressure_pa", 1e-3, False, caption="The brake starts as a wedge at each source.")
+PIPE = Quantity("pipe_pressure_picture", "Brake pipe, whole train", "pipe pressure [kPa]", "pressures", "pipe_pressure_pa",
+                1e-3, False, caption="The fall in the pipe goes before the cylinders.")
 SLIP = Quantity("slip_picture", "Wheel slip, whole train", "creepage [%]", "state", "creepage", 100.0, False,
                 caption="Creepage of each vehicle's wheelset with the largest.")
 ACCELERATION = Quantity("acceleration_picture", "Acceleration, whole train", "acceleration [m/s²]", "state",
@@ -101,6 +103,8 @@ def _series(quantity: Quantity, group: Group, least_rows: int = 2) -> Tuple[dict
         if reason:
             return reason
         time_s, values = quantity.of(run)
+        if quantity is PIPE and not values.shape[1]:
+            return "its brake has no pipe: it is not of kind pneumatic"
         if len(time_s) < 2:
             return "the LTD models have no wheels that could slip" if quantity is SLIP and run.model != "2d" else \
                 "there is but one record"
@@ -152,6 +156,10 @@ def draw_force(group: Group) -> Figure:
 
 def draw_acceleration(group: Group) -> Figure:
     return _draw(ACCELERATION, group)
+
+
+def draw_pipe(group: Group) -> Figure:
+    return _draw(PIPE, group)
 
 
 def draw_pressure(group: Group) -> Figure:

@@ -20,7 +20,7 @@ struct Quantity {
   std::vector<double> (*values)(const Snapshot&);  ///< [vehicle] in SI units
 };
 
-/// coupler_force, pressure, slip, acceleration.
+/// coupler_force, pressure, pipe_pressure, slip, acceleration.
 const std::vector<Quantity>& Quantities();
 
 /// Null if there is none of that name.

@@ -8,32 +8,37 @@
 #include "train_dynamics/brake/air_brake.h"
 #include "train_dynamics/brake/brake_command.h"
 #include "train_dynamics/brake/brake_pressures.h"
+#include "train_dynamics/brake/pneumatic/pneumatic_brake.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/judgement.h"
 
 namespace train_dynamics {
 
-enum class BrakeSystemKind { kEmpirical };
+enum class BrakeSystemKind { kEmpirical, kPneumatic };
 
 /// A brake system that turns the driver's commands into cylinder pressures.
 struct BrakeSystemParams {
   std::string name;
   BrakeSystemKind kind = BrakeSystemKind::kEmpirical;
   AirBrakeParams empirical;
+  PneumaticBrakeParams pneumatic;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name);
-    v.Choice("kind", kind, {{"empirical", BrakeSystemKind::kEmpirical}});
-    empirical.Visit(v);
+    v.Choice("kind", kind,
+             {{"empirical", BrakeSystemKind::kEmpirical}, {"pneumatic", BrakeSystemKind::kPneumatic}});
+    if (kind == BrakeSystemKind::kEmpirical) empirical.Visit(v);
+    if (kind == BrakeSystemKind::kPneumatic) pneumatic.Visit(v);
   }
 
   /// What these commands break in a train of so many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
-    return empirical.BrokenRules(commands, vehicles);
+    return kind == BrakeSystemKind::kEmpirical ? empirical.BrokenRules(commands, vehicles)
+                                               : pneumatic.BrokenRules(commands, vehicles);
   }
-  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands) const {
-    return empirical.Warnings(commands);
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const {
+    return kind == BrakeSystemKind::kEmpirical ? empirical.Warnings(commands) : pneumatic.Warnings(vehicles);
   }
 };
 
@@ -52,13 +57,15 @@ struct PressureGrid {
 /// The list of fields serves saving, restoring and the digest of the train's state; see train/snapshot.h.
 class BrakeSystem {
  public:
-  using System = std::variant<BrakePressures, PressureTable>;
+  using System = std::variant<BrakePressures, PressureTable, PneumaticBrake>;
 
   explicit BrakeSystem(System system) : system_(std::move(system)) {}
   /// @param vehicle_positions_m  see AirBrake
+  /// @param vehicle_length_m  of each vehicle; a pneumatic brake needs them
   /// @throws std::invalid_argument as AirBrake
   BrakeSystem(const BrakeSystemParams& params, const std::vector<BrakeCommand>& commands,
-              const std::vector<double>& vehicle_positions_m, const PressureGrid& grid);
+              const std::vector<double>& vehicle_positions_m, const PressureGrid& grid,
+              const std::vector<double>& vehicle_length_m = {});
 
   /// Resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
@@ -69,6 +76,9 @@ class BrakeSystem {
   }
   /// From now on a time means one that is so much later.
   void MoveAhead(double seconds) { ahead_s_ += seconds; }
+
+  /// The machine behind it, at the last grid time before or at that of PressuresAt; none: nullptr.
+  const PneumaticBrake* pneumatic() const { return std::get_if<PneumaticBrake>(&system_); }
 
   template <class Function>
   void ForEachField(Function&& function) {

@@ -29,6 +29,7 @@ struct TrainRecord {
   LoadArrays held;                           ///< the loads of the interval that ended
   std::vector<double> coupler_extension_m;   ///< [connection]
   std::vector<double> cylinder_pressure_pa;  ///< [vehicle] at time_s
+  BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
   std::optional<EnergyLedger> ledger;        ///< where one is due
   TimeZero at_time_zero;                     ///< of the run, also where it was resumed later

@@ -57,20 +57,20 @@ ControlValve::ControlValve(const ControlValveParams& params, double temperature_
       Log(0.95 * maximum_kpa / 40.0) / (ecp ? params.ecp.release_time_s : params.graduated.release_time_s);
 }
 
-ValveState ControlValve::Charged(double pipe_pa) const {
+ControlValveState ControlValve::Charged(double pipe_pa) const {
   return {pipe_pa, pipe_pa, kAtmospherePa, kAtmospherePa, pipe_pa, 0.0, 0.0, 0.0};
 }
 
-ValveState ControlValve::Empty() const { return Charged(kAtmospherePa); }
+ControlValveState ControlValve::Empty() const { return Charged(kAtmospherePa); }
 
-double ControlValve::PressureVolume(const ValveState& s) const {
+double ControlValve::PressureVolume(const ControlValveState& s) const {
   double pv = s.auxiliary_pa * auxiliary_m3_ + s.cylinder_pa * cylinder_m3_;
   if (p_.kind == ControlValveKind::kDirectRelease) pv += s.emergency_pa * emergency_m3_;
   if (p_.kind != ControlValveKind::kEcp) pv += s.quick_service_pa * quick_service_m3_;
   return pv;
 }
 
-double ControlValve::Step(const TrainLine& line, Retainer retainer, ValveState& s, double& pipe_pa,
+double ControlValve::Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa,
                           double pipe_m3) const {
   double out = 0.0;
   const double lost = Min(leak_pa_, Max(0.0, s.cylinder_pa - kAtmospherePa));
@@ -91,7 +91,8 @@ double ControlValve::Step(const TrainLine& line, Retainer retainer, ValveState& 
   return out;
 }
 
-double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_pa, double pipe_m3) const {
+double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double& pipe_pa,
+                                double pipe_m3) const {
   const DirectReleaseParams& d = p_.direct;
   double out = 0.0;
 
@@ -99,10 +100,10 @@ double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_p
   s.quick_action_pa += (pipe_pa - s.quick_action_pa) * chamber_share_;
   const double gap = s.quick_action_pa - pipe_pa;
   double open_s = 0.0;
-  if (s.Mode() != ValveMode::kEmergency) {
+  if (s.Mode() != ControlValveMode::kEmergency) {
     const double threshold = d.quick_action_threshold_kpa * 1e3;
     if (gap > threshold) {
-      s.SetMode(ValveMode::kEmergency);
+      s.SetMode(ControlValveMode::kEmergency);
       const double rise = gap - s.quick_action_gap_pa;
       open_s = dt_s_ * (rise > 0.0 ? Clamp((gap - threshold) / rise, 0.0, 1.0) : 1.0);
       s.vent_open_s = open_s;
@@ -119,28 +120,28 @@ double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_p
   // The mode.
   const double above = s.auxiliary_pa - pipe_pa;
   switch (s.Mode()) {
-    case ValveMode::kRelease:
-      if (above > d.apply_kpa * 1e3) s.SetMode(ValveMode::kApply);
+    case ControlValveMode::kRelease:
+      if (above > d.apply_kpa * 1e3) s.SetMode(ControlValveMode::kApply);
       break;
-    case ValveMode::kApply:
+    case ControlValveMode::kApply:
       if (above < -d.release_kpa * 1e3) {
-        s.SetMode(ValveMode::kRelease);
+        s.SetMode(ControlValveMode::kRelease);
       } else if (above < d.lap_kpa * 1e3) {
-        s.SetMode(ValveMode::kLap);
+        s.SetMode(ControlValveMode::kLap);
       }
       break;
-    case ValveMode::kLap:
-      if (above < -d.release_kpa * 1e3) s.SetMode(ValveMode::kRelease);
-      if (above > d.apply_kpa * 1e3) s.SetMode(ValveMode::kApply);
+    case ControlValveMode::kLap:
+      if (above < -d.release_kpa * 1e3) s.SetMode(ControlValveMode::kRelease);
+      if (above > d.apply_kpa * 1e3) s.SetMode(ControlValveMode::kApply);
       break;
-    case ValveMode::kEmergency:
-      if (s.vent_open_s == 0.0 && above < -d.release_kpa * 1e3) s.SetMode(ValveMode::kRelease);
+    case ControlValveMode::kEmergency:
+      if (s.vent_open_s == 0.0 && above < -d.release_kpa * 1e3) s.SetMode(ControlValveMode::kRelease);
       break;
   }
 
   // What is connected in it.
   switch (s.Mode()) {
-    case ValveMode::kRelease: {
+    case ControlValveMode::kRelease: {
       PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.auxiliary_pa, auxiliary_m3_);
       PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.emergency_pa, emergency_m3_);
       double retained = kAtmospherePa;
@@ -151,9 +152,9 @@ double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_p
       out += PassToPlace(quick_service_, dt_s_, s.quick_service_pa, quick_service_m3_, kAtmospherePa);
       break;
     }
-    case ValveMode::kApply:
-    case ValveMode::kLap: {
-      if (s.Mode() == ValveMode::kApply)
+    case ControlValveMode::kApply:
+    case ControlValveMode::kLap: {
+      if (s.Mode() == ControlValveMode::kApply)
         PassOneWay(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, s.cylinder_pa, cylinder_m3_);
       const double quick = kAtmospherePa + d.quick_service_kpa * 1e3;
       if (s.quick_service_pa < quick) {
@@ -169,7 +170,7 @@ double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_p
         PassOneWay(limiting_, dt_s_, pipe_pa, pipe_m3, s.cylinder_pa, cylinder_m3_);
       break;
     }
-    case ValveMode::kEmergency:
+    case ControlValveMode::kEmergency:
       Pass(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, s.cylinder_pa, cylinder_m3_);
       PassOneWay(emergency_, dt_s_, s.emergency_pa, emergency_m3_, s.cylinder_pa, cylinder_m3_);
       if (d.accelerated_release && s.vent_open_s == 0.0 &&
@@ -183,7 +184,7 @@ double ControlValve::StepDirect(Retainer retainer, ValveState& s, double& pipe_p
 }
 
 double ControlValve::Follow(double goal_pa, double fill_per_s, double release_per_s,
-                            double least_fill_pa_per_s, ValveState& s) const {
+                            double least_fill_pa_per_s, ControlValveState& s) const {
   const double now = s.cylinder_pa - kAtmospherePa;
   if (now < goal_pa) {
     const double rate = Max(least_fill_pa_per_s, fill_per_s * (1.05 * goal_pa - now));
@@ -199,19 +200,19 @@ double ControlValve::Follow(double goal_pa, double fill_per_s, double release_pe
   return fall * cylinder_m3_;
 }
 
-double ControlValve::StepGraduated(ValveState& s, double& pipe_pa, double pipe_m3) const {
+double ControlValve::StepGraduated(ControlValveState& s, double& pipe_pa, double pipe_m3) const {
   const GraduatedReleaseParams& g = p_.graduated;
   double out = 0.0;
   const double below = s.quick_action_pa - pipe_pa;
-  if (s.Mode() == ValveMode::kRelease) {
-    if (below > g.insensitivity_kpa * 1e3) s.SetMode(ValveMode::kApply);
+  if (s.Mode() == ControlValveMode::kRelease) {
+    if (below > g.insensitivity_kpa * 1e3) s.SetMode(ControlValveMode::kApply);
   } else if (below < g.release_kpa * 1e3) {
-    s.SetMode(ValveMode::kRelease);
+    s.SetMode(ControlValveMode::kRelease);
   }
   PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.auxiliary_pa, auxiliary_m3_);
   const double maximum = g.maximum_cylinder_kpa * 1e3;
   double goal = 0.0, least = 0.0;
-  if (s.Mode() == ValveMode::kRelease) {
+  if (s.Mode() == ControlValveMode::kRelease) {
     s.quick_action_pa -= below * chamber_share_;
     out += PassToPlace(quick_service_, dt_s_, s.quick_service_pa, quick_service_m3_, kAtmospherePa);
   } else {
@@ -229,7 +230,8 @@ double ControlValve::StepGraduated(ValveState& s, double& pipe_pa, double pipe_m
   return out + Follow(goal, fill_per_s_, release_per_s_, least, s);
 }
 
-double ControlValve::StepEcp(const TrainLine& line, ValveState& s, double& pipe_pa, double pipe_m3) const {
+double ControlValve::StepEcp(const TrainLine& line, ControlValveState& s, double& pipe_pa,
+                             double pipe_m3) const {
   const EcpParams& e = p_.ecp;
   PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.auxiliary_pa, auxiliary_m3_);
   const bool charged = s.quick_action_pa > kAtmospherePa + e.emergency_pipe_kpa * 1e3;
@@ -238,7 +240,9 @@ double ControlValve::StepEcp(const TrainLine& line, ValveState& s, double& pipe_
   const bool lost = charged && pipe_pa < kAtmospherePa + e.emergency_pipe_kpa * 1e3;
   const bool emergency = line.ecp_emergency || lost;
   const double goal = (emergency ? 1.0 : line.ecp_goal) * e.maximum_cylinder_kpa * 1e3;
-  s.SetMode(emergency ? ValveMode::kEmergency : goal > 0.0 ? ValveMode::kApply : ValveMode::kRelease);
+  s.SetMode(emergency    ? ControlValveMode::kEmergency
+            : goal > 0.0 ? ControlValveMode::kApply
+                         : ControlValveMode::kRelease);
   return Follow(goal, emergency ? emergency_fill_per_s_ : fill_per_s_, release_per_s_, 0.0, s);
 }
 

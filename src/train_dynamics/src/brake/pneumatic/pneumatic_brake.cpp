@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "train_dynamics/vehicle_number.h"
 
 namespace train_dynamics {
 namespace {
 
-constexpr double kLongestStep = 5e-3;    // [s]
-constexpr double kDischarge = 0.8;       // [A]
-constexpr double kRelayBand = 10e3;      // [Pa] of error over which a relay opens fully [A]
-constexpr double kRadioPatience = 45.0;  // [s] [A]
-constexpr double kRiseRate = 100e3;      // [Pa/s] of the equalising reservoir [A]
+constexpr double kLongestStep = 5e-3;         // [s]
+constexpr double kDischarge = 0.8;            // [A]
+constexpr double kRelayBand = 10e3;           // [Pa] of error over which a relay opens fully [A]
+constexpr double kRadioPatience = 45.0;       // [s] [A]
+constexpr double kLongestForOneValve = 38.1;  // [m] AAR S-401 [S]
+constexpr double kRiseRate = 100e3;           // [Pa/s] of the equalising reservoir [A]
 
 PipeGrid MakeGrid(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m) {
   std::vector<double> length, branch;
@@ -70,13 +74,143 @@ std::vector<int> PneumaticBrakeParams::ValveOfVehicle(int vehicles) const {
   return valve;
 }
 
+std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands,
+                                                          int n) const {
+  std::vector<BrokenRule> broken;
+  const auto at = [](const char* list, std::size_t i) {
+    return std::string(list) + "[" + std::to_string(i) + "]";
+  };
+  const auto outside = [&](int number) { return VehicleIndex(number, n) < 0; };
+  const std::string behind = n > 1 ? "must be in [1, " + std::to_string(n - 1) +
+                                         "]: a hose and its angle cocks are between two vehicles"
+                                   : "has no place in a train of one vehicle";
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (outside(sources[i].vehicle))
+      broken.push_back({"brake." + at("sources", i) + ".vehicle", VehicleRule(n), {"train"}});
+    for (std::size_t k = 1; k < sources[i].commands.size(); ++k) {
+      if (sources[i].commands[k].time_s < sources[i].commands[k - 1].time_s)
+        broken.push_back({"brake." + at("sources", i) + "." + at("commands", k) + ".time_s",
+                          "must be at least that of the command before",
+                          {}});
+    }
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < valves.size(); ++i) {
+    if (!names.insert(valves[i].name).second)
+      broken.push_back({"brake." + at("valves", i) + ".name",
+                        "must be another one for each valve, \"" + valves[i].name + "\" is given twice",
+                        {}});
+  }
+  std::vector<int> said_by(n, -1);
+  bool good = true;
+  for (std::size_t i = 0; i < equipment.size(); ++i) {
+    const BrakeEquipmentParams& e = equipment[i];
+    const std::string key = "brake." + at("equipment", i);
+    if (!e.valve.empty() && names.count(e.valve) == 0) {
+      broken.push_back(
+          {key + ".valve", "must be the name of one of brake.valves, there is no \"" + e.valve + "\"", {}});
+      good = false;
+    }
+    const int from = VehicleIndex(e.from, n), to = VehicleIndex(e.to, n);
+    if (from < 0) broken.push_back({key + ".from", VehicleRule(n), {"train"}});
+    if (to < 0) broken.push_back({key + ".to", VehicleRule(n), {"train"}});
+    if (from >= 0 && to >= 0 && from > to)
+      broken.push_back({key + ".to", "must not be in front of from", {}});
+    if (from < 0 || to < 0 || from > to) {
+      good = false;
+      continue;
+    }
+    for (int v = from; v <= to; ++v) {
+      if (said_by[v] >= 0) {
+        broken.push_back({key + ".from",
+                          "must leave each vehicle to one entry: vehicle " + std::to_string(v + 1) +
+                              " is in brake." + at("equipment", said_by[v]) + ", too",
+                          {}});
+        break;
+      }
+      said_by[v] = static_cast<int>(i);
+    }
+  }
+  for (std::size_t i = 0; i < closed_angle_cocks.size(); ++i)
+    if (closed_angle_cocks[i] >= n)
+      broken.push_back({"brake." + at("closed_angle_cocks", i), behind, {"train"}});
+  for (std::size_t i = 0; i < parted_hoses.size(); ++i)
+    if (parted_hoses[i].behind_vehicle >= n)
+      broken.push_back({"brake." + at("parted_hoses", i) + ".behind_vehicle", behind, {"train"}});
+  bool direct = false;
+  if (good)
+    for (int valve : ValveOfVehicle(n))
+      direct = direct || valves[valve].kind == ControlValveKind::kDirectRelease;
+  double reduction = 0.0;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const std::string key = at("commands", i) + ".reduction_kpa";
+    if (commands[i].kind != BrakeCommandKind::kApply) {
+      reduction = 0.0;
+      continue;
+    }
+    const double wanted = commands[i].reduction_kpa;
+    if (wanted > charged_pressure_kpa)
+      broken.push_back(
+          {key,
+           "must be at most brake.charged_pressure_kpa, " + ShortestDecimal(charged_pressure_kpa),
+           {"brake"}});
+    if (direct && wanted < reduction)
+      broken.push_back(
+          {key,
+           "must not be below that of the application before, " + ShortestDecimal(reduction) +
+               ": valves of direct release cannot let the brake down by steps; release first, or give the "
+               "vehicles valves of kind graduated_release",
+           {"brake"}});
+    reduction = wanted;
+  }
+  return broken;
+}
+
+std::vector<Warning> PneumaticBrakeParams::Warnings(int n) const {
+  std::vector<Warning> warnings;
+  std::vector<int> of_valve(valves.size(), 0);
+  int direct = 0, graduated = 0, ecp = 0;
+  for (int valve : ValveOfVehicle(n)) {
+    ++of_valve[valve];
+    direct += valves[valve].kind == ControlValveKind::kDirectRelease;
+    graduated += valves[valve].kind == ControlValveKind::kGraduatedRelease;
+    ecp += valves[valve].kind == ControlValveKind::kEcp;
+  }
+  if (direct > 0 && graduated > 0) {
+    warnings.push_back(
+        {"brake.valves",
+         "the train has " + std::to_string(direct) + " valves of direct and " + std::to_string(graduated) +
+             " of graduated release: at the first rise of the pipe the direct ones release fully, the "
+             "others follow the pipe, so that parts of the train brake while others run free"});
+  }
+  if (ecp > 0 && ecp < n) {
+    warnings.push_back({"brake.valves", "the train has " + std::to_string(ecp) + " ECP vehicles of " +
+                                            std::to_string(n) +
+                                            ": these brake at once, the others with the wave in the pipe"});
+  }
+  for (std::size_t i = 0; i < valves.size(); ++i) {
+    if (of_valve[i] == 0)
+      warnings.push_back(
+          {"brake.valves[" + std::to_string(i) + "]", "valve \"" + valves[i].name + "\" is on no vehicle"});
+  }
+  return warnings;
+}
+
 PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
-                               const std::vector<double>& vehicle_length_m)
+                               const std::vector<double>& vehicle_length_m,
+                               std::vector<BrakeCommand> commands)
     : params_(params),
       grid_(MakeGrid(params, vehicle_length_m)),
       dt_s_(StepFor(grid_)),
-      flow_(grid_, kAtmospherePa + 1e3 * params.initial_pressure_kpa.value_or(params.charged_pressure_kpa)) {
+      flow_(grid_, kAtmospherePa + 1e3 * params.initial_pressure_kpa.value_or(params.charged_pressure_kpa)),
+      commands_(std::move(commands)) {
   const int vehicles = static_cast<int>(vehicle_length_m.size());
+  for (int i = 0; i < vehicles; ++i) {
+    if (vehicle_length_m[i] > kLongestForOneValve)
+      throw std::invalid_argument("vehicle " + std::to_string(i + 1) +
+                                  " is longer than 38.1 m (125 ft), the most that one " +
+                                  "control valve serves");
+  }
   const int cells = params.pipe.cells_per_vehicle;
   for (const ControlValveParams& valve : params.valves)
     valves_.emplace_back(valve, params.pipe.temperature_k, dt_s_);
@@ -259,6 +393,11 @@ void PneumaticBrake::StepSource(int i) {
 }
 
 void PneumaticBrake::Step() {
+  for (auto next = static_cast<std::size_t>(given_);
+       next < commands_.size() && commands_[next].time_s <= time_s(); ++next) {
+    Command(commands_[next]);
+    given_ += 1.0;
+  }
   for (const PartedHoseParams& hose : params_.parted_hoses)
     if (time_s() >= hose.time_s) OpenPipe(hose.time_s, hose.behind_vehicle - 1);
   Advance(grid_, dt_s_, flow_);
@@ -286,7 +425,7 @@ void PneumaticBrake::Step() {
   }
   std::swap(acting_pa_, acting_before_pa_);
   for (int i = 0; i < vehicles(); ++i) {
-    ValveState& s = states_[i];
+    ControlValveState& s = states_[i];
     const int cell = valve_cell_[i];
     if (!cut_out_[i])
       released_pv_ +=
@@ -302,6 +441,18 @@ void PneumaticBrake::PressuresAt(double when_s, std::vector<double>& pressure_pa
   pressure_pa.resize(states_.size());
   for (int i = 0; i < vehicles(); ++i)
     pressure_pa[i] = acting_pa_[i] - back * (acting_pa_[i] - acting_before_pa_[i]);
+}
+
+void PneumaticBrake::Record(BrakeRecordArrays& record) const {
+  ForEachBrakeField([&](const char*, auto&, auto& to) { to.resize(states_.size()); }, record, record);
+  for (int i = 0; i < vehicles(); ++i) {
+    const bool direct = valves_[valve_of_[i]].params().kind == ControlValveKind::kDirectRelease;
+    record.pipe_pressure_pa[i] = PipePressure(i);
+    record.auxiliary_reservoir_pa[i] = states_[i].auxiliary_pa - kAtmospherePa;
+    record.emergency_reservoir_pa[i] =
+        direct ? states_[i].emergency_pa - kAtmospherePa : std::numeric_limits<double>::quiet_NaN();
+    record.valve_mode[i] = states_[i].mode;
+  }
 }
 
 double PneumaticBrake::PipeLength() const {

@@ -159,24 +159,24 @@ struct ControlValveParams {
 };
 
 /// What a valve does.
-enum class ValveMode { kRelease, kApply, kLap, kEmergency };
+enum class ControlValveMode { kRelease, kApply, kLap, kEmergency };
 
 /// The air of one vehicle's brake beside the pipe; pressures absolute.
-struct ValveState {
+struct ControlValveState {
   double auxiliary_pa, emergency_pa, cylinder_pa;
   double quick_service_pa;     ///< in the quick-service volume, or accelerating chamber
   double quick_action_pa;      ///< p_q of the quick-action chamber, or p_R of the control reservoir
   double quick_action_gap_pa;  ///< p_q less pipe at the last step
   double vent_open_s;          ///< for which the emergency vent has been open
-  double mode;                 ///< a ValveMode
+  double mode;                 ///< a ControlValveMode
 
   template <class Function>
   void ForEachField(Function&& function) {
     function(auxiliary_pa), function(emergency_pa), function(cylinder_pa), function(quick_service_pa);
     function(quick_action_pa), function(quick_action_gap_pa), function(vent_open_s), function(mode);
   }
-  ValveMode Mode() const { return static_cast<ValveMode>(static_cast<int>(mode)); }
-  void SetMode(ValveMode m) { mode = static_cast<double>(static_cast<int>(m)); }
+  ControlValveMode Mode() const { return static_cast<ControlValveMode>(static_cast<int>(mode)); }
+  void SetMode(ControlValveMode m) { mode = static_cast<double>(static_cast<int>(m)); }
 };
 
 /// Where a retaining valve stands.
@@ -203,26 +203,27 @@ class ControlValve {
   ControlValve(const ControlValveParams& params, double temperature_k, double dt_s);
 
   /// Charged, or with no more air than the atmosphere.
-  ValveState Charged(double pipe_pa) const;
-  ValveState Empty() const;
+  ControlValveState Charged(double pipe_pa) const;
+  ControlValveState Empty() const;
 
   /// One step over the pipe's pressure at the vehicle. @return p V let out to the atmosphere [J]
   ///
   /// @param pipe_pa  of the vehicle's cell, of volume pipe_m3; changed by what the valve takes or vents
-  double Step(const TrainLine& line, Retainer retainer, ValveState& s, double& pipe_pa, double pipe_m3) const;
+  double Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa,
+              double pipe_m3) const;
 
   /// p V of all air that the state holds [J].
-  double PressureVolume(const ValveState& s) const;
+  double PressureVolume(const ControlValveState& s) const;
 
   const ControlValveParams& params() const { return p_; }
 
  private:
-  double StepDirect(Retainer retainer, ValveState& s, double& pipe_pa, double pipe_m3) const;
-  double StepGraduated(ValveState& s, double& pipe_pa, double pipe_m3) const;
-  double StepEcp(const TrainLine& line, ValveState& s, double& pipe_pa, double pipe_m3) const;
+  double StepDirect(Retainer retainer, ControlValveState& s, double& pipe_pa, double pipe_m3) const;
+  double StepGraduated(ControlValveState& s, double& pipe_pa, double pipe_m3) const;
+  double StepEcp(const TrainLine& line, ControlValveState& s, double& pipe_pa, double pipe_m3) const;
   /// Moves the cylinder towards a goal (gauge); air from the auxiliary reservoir. @return p V let out
   double Follow(double goal_pa, double fill_per_s, double release_per_s, double least_fill_pa_per_s,
-                ValveState& s) const;
+                ControlValveState& s) const;
 
   ControlValveParams p_;
   double dt_s_;

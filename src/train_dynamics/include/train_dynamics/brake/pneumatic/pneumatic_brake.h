@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/brake/pneumatic/brake_record.h"
 #include "train_dynamics/brake/pneumatic/control_valve.h"
 #include "train_dynamics/brake/pneumatic/pipe_flow.h"
 #include "train_dynamics/judgement.h"
@@ -186,7 +187,7 @@ struct PneumaticBrakeParams {
 
   /// What breaks in a train of so many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
-  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  std::vector<Warning> Warnings(int vehicles) const;
   /// Of each vehicle: the index of its valve.
   std::vector<int> ValveOfVehicle(int vehicles) const;
 };
@@ -235,8 +236,10 @@ struct SourceState {
 class PneumaticBrake {
  public:
   /// @param vehicle_length_m  of each vehicle, front to rear, > 0
+  /// @param commands  the driver's, times ascending; others may come by Command()
   /// @throws std::invalid_argument naming what does not suit the train
-  PneumaticBrake(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m);
+  PneumaticBrake(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m,
+                 std::vector<BrakeCommand> commands = {});
 
   int vehicles() const { return static_cast<int>(states_.size()); }
   double step_s() const { return dt_s_; }
@@ -255,20 +258,23 @@ class PneumaticBrake {
   void ForEachField(Function&& function) {
     for (double& p : flow_.pressure_pa) function(p);
     for (double& m : flow_.mass_flow_kgps) function(m);
-    for (ValveState& s : states_) s.ForEachField(function);
+    for (ControlValveState& s : states_) s.ForEachField(function);
     for (SourceState& s : sources_) s.ForEachField(function);
     line_.ForEachField(function);
     for (double& p : acting_pa_) function(p);
     for (double& p : acting_before_pa_) function(p);
     for (double& p : independent_pa_) function(p);
-    function(steps_), function(supplied_pv_), function(released_pv_);
+    function(steps_), function(supplied_pv_), function(released_pv_), function(given_);
   }
 
-  // What is recorded, at the last grid time; pressures gauge [Pa].
+  /// What is recorded of each vehicle, at the last grid time; resizes.
+  void Record(BrakeRecordArrays& record) const;
+
+  // The same one by one, and of the train; pressures gauge [Pa].
   double time_s() const { return steps_ * dt_s_; }
   double PipePressure(int vehicle) const { return flow_.pressure_pa[valve_cell_[vehicle]] - kAtmospherePa; }
-  const ValveState& valve(int vehicle) const { return states_[vehicle]; }
-  ValveState& valve(int vehicle) { return states_[vehicle]; }
+  const ControlValveState& valve(int vehicle) const { return states_[vehicle]; }
+  ControlValveState& valve(int vehicle) { return states_[vehicle]; }
   const SourceState& source(int i) const { return sources_[i]; }
   double HeadPressure() const { return flow_.pressure_pa.front() - kAtmospherePa; }
   double TailPressure() const { return flow_.pressure_pa.back() - kAtmospherePa; }
@@ -301,11 +307,13 @@ class PneumaticBrake {
   bool all_ecp_ = true, has_line_ = false;
 
   PipeFlow flow_;
-  std::vector<ValveState> states_;
+  std::vector<ControlValveState> states_;
   std::vector<SourceState> sources_;
   SourceState line_{};
   std::vector<double> acting_pa_, acting_before_pa_, independent_pa_;
   std::vector<int> parted_;  ///< faces
+  std::vector<BrakeCommand> commands_;
+  double given_ = 0.0;  ///< of commands_
   double steps_ = 0.0, supplied_pv_ = 0.0, released_pv_ = 0.0;
 };
 

@@ -1,0 +1,135 @@
+#include "train_sim/brake_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "train_dynamics/brake/pneumatic/air_test.h"
+#include "train_dynamics/config/load_scenario.h"
+#include "train_dynamics/train/braked_weight.h"
+#include "train_dynamics/train/in_process_train.h"
+#include "train_dynamics/train/train_master.h"
+#include "train_sim/run_command.h"
+
+namespace train_sim {
+namespace {
+
+using train_dynamics::BrakeCommandKind;
+using train_dynamics::BrakeSystemKind;
+using train_dynamics::Consist;
+using train_dynamics::ScenarioParams;
+using train_dynamics::config::LoadedScenario;
+
+LoadedScenario LoadWithPneumaticBrake(const std::string& file, const std::vector<std::string>& overrides) {
+  LoadedScenario loaded = train_dynamics::config::LoadScenario(file, overrides);
+  const ScenarioParams& params = loaded.params;
+  if (!params.pressure_table.empty() || !params.brake || params.brake->kind != BrakeSystemKind::kPneumatic)
+    throw std::invalid_argument(
+        file + ": brake.kind must be pneumatic for this command; try --set brake=ab_head_end");
+  return loaded;
+}
+
+std::vector<double> Lengths(const Consist& consist) {
+  std::vector<double> length_m;
+  for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
+  return length_m;
+}
+
+/// Distance [m] of the train's middle from the emergency's command to its stop, on level track.
+double StoppingDistance(ScenarioParams params, double speed_kmh) {
+  params.model = train_dynamics::VehicleModel::kLtd;
+  for (auto& group : params.train.consist) group.model.reset();
+  params.detail_vehicles.clear();
+  params.track.grades.clear();
+  params.commands = {{0.0, BrakeCommandKind::kEmergency}};
+  params.initial_speed_kmh = speed_kmh;
+  params.duration_s = 600.0;
+  params.dt_s = params.exchange_interval_s = 0.001;
+  params.record_interval_s = 0.05;
+  params.ledger_interval_s = 600.0;
+  const Consist consist(params.train);
+  train_dynamics::InProcessTransport transport(params, consist, 1);
+  train_dynamics::TrainMaster master(params, consist, transport, MakeBrakeSystem(params, consist));
+  double begin_m = 0.0, end_m = 0.0;
+  bool stands = false;
+  master.AddObserver([&](const train_dynamics::TrainRecord& record) {
+    if (record.exchange == 0) begin_m = record.mean_position_m;
+    end_m = record.mean_position_m;
+    stands = record.exchange > 0 && record.mean_speed_mps < 0.01;
+  });
+  master.Start();
+  while (!master.Done() && !stands) master.Exchange();
+  if (!stands) throw std::invalid_argument("does not stop within 600 s: is its brake too weak?");
+  return end_m - begin_m;
+}
+
+/// One vehicle of the last group, with its brake.
+ScenarioParams Alone(ScenarioParams params) {
+  auto& consist = params.train.consist;
+  const int vehicles = params.train.VehicleCount();
+  consist = {consist.back()};
+  consist[0].count = consist[0].vehicles_per_unit = 1;
+  auto& brake = params.brake->pneumatic;
+  brake.valves = {brake.valves[brake.ValveOfVehicle(vehicles).back()]};
+  brake.equipment.clear();
+  brake.closed_angle_cocks.clear();
+  brake.parted_hoses.clear();
+  brake.sources.resize(1);
+  brake.sources[0].vehicle = 1;
+  return params;
+}
+
+}  // namespace
+
+int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides) {
+  const LoadedScenario loaded = LoadWithPneumaticBrake(scenario_file, overrides);
+  const std::vector<double> length_m = Lengths(loaded.consist);
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const auto results = train_dynamics::TestAirBrake(loaded.params.brake->pneumatic, length_m);
+  fmt::print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n", loaded.params.brake->name,
+             length_m.size(), "test", "value", "", "rule", "");
+  int failed = 0;
+  for (const train_dynamics::AirTestResult& r : results) {
+    fmt::print("{:<52} {:>9} {:<8} {:<46} {}\n", r.test,
+               std::isnan(r.value) ? "never" : fmt::format("{:.4g}", r.value), r.unit, r.rule,
+               r.passed ? "passed" : "FAILED");
+    failed += !r.passed;
+  }
+  fmt::print("\n{} of {} passed\n", results.size() - failed, results.size());
+  return failed == 0 ? train_run::kSuccess : train_run::kFailure;
+}
+
+int PrintBrakeWeight(const std::string& scenario_file, const std::vector<std::string>& overrides) {
+  const LoadedScenario loaded = LoadWithPneumaticBrake(scenario_file, overrides);
+  const ScenarioParams alone = Alone(loaded.params);
+  fmt::print("{}\n\nalone: {}, {:.1f} t\n", loaded.params.name, alone.train.consist[0].vehicle.name,
+             1e-3 * alone.train.consist[0].vehicle.TotalMass());
+  double lambda = 0.0;
+  for (const double speed_kmh : {120.0, 100.0}) {
+    const double stop_m = StoppingDistance(alone, speed_kmh);
+    lambda = train_dynamics::BrakedWeightPercentage(speed_kmh, stop_m);
+    fmt::print("  from {:g} km/h: {:.1f} m, braked weight {:.1f} % (UIC 544-1)\n", speed_kmh, stop_m, lambda);
+  }
+  double train_m = 0.0;
+  for (const double length_m : Lengths(loaded.consist)) train_m += length_m;
+  const auto& pneumatic = loaded.params.brake->pneumatic;
+  const auto& valve = pneumatic.valves[pneumatic.ValveOfVehicle(loaded.consist.vehicles()).back()];
+  const bool goods =
+      valve.kind == train_dynamics::ControlValveKind::kGraduatedRelease && valve.graduated.fill_time_s > 10.0;
+  const double stop_m = StoppingDistance(loaded.params, 100.0);
+  const double model_m = train_dynamics::EtcsStoppingDistance(
+      lambda, train_m, 100.0,
+      goods ? train_dynamics::BrakingPosition::kGoods : train_dynamics::BrakingPosition::kPassenger);
+  const double difference = stop_m / model_m - 1.0;
+  const bool agrees = std::abs(difference) <= 0.1;
+  fmt::print(
+      "train: {} vehicles, {:.0f} m, position {}\n  from 100 km/h: {:.1f} m; conversion model of ETCS {:.1f} "
+      "m: {:+.1f} %, {}\n",
+      loaded.consist.vehicles(), train_m, goods ? "G" : "P", stop_m, model_m, 100.0 * difference,
+      agrees ? "within 10 %" : "FAILED: more than 10 %");
+  return agrees ? train_run::kSuccess : train_run::kFailure;
+}
+
+}  // namespace train_sim
