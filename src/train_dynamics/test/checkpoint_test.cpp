@@ -138,6 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
              {"model=ltd", "duration_s=60", "train.connection={base: friction_gear, strength_n: 8.0e4}"},
              0.9},
         // After the wagon has come to rest: the summary remembers when it stopped.
+        Case{"InTheMiddleOfABrakeWave", "hose_parted", {"duration_s=12"}, 0.55},
         Case{"AfterTheStop", "single_wagon_stop", {}, 0.95}),
     [](const auto& c) { return std::string(c.param.name); });
 

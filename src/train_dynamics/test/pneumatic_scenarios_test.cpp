@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simulate.h"
+#include "strict_config/error_list.h"
 
 namespace train_dynamics {
 namespace {
@@ -136,6 +137,48 @@ TEST(Scenario, TheSameDigestAgain) {
   EXPECT_EQ(Simulated("hose_parted", few).digest, Simulated("hose_parted", few).digest);
   EXPECT_NE(Simulated("hose_parted", few).digest,
             Simulated("hose_parted", {"duration_s=5", "brake.charged_pressure_kpa=590"}).digest);
+}
+
+// What is refused, with the words that tell how to mend it.
+std::string Refusal(const std::vector<std::string>& overrides) {
+  try {
+    config::LoadScenario(ScenarioFile("full_service_ab"), overrides);
+  } catch (const strict_config::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+void ExpectRefused(const std::vector<std::string>& overrides, const std::string& words) {
+  EXPECT_NE(Refusal(overrides).find(words), std::string::npos) << Refusal(overrides);
+}
+
+TEST(Scenario, OfAPneumaticBrakeIsRefused) {
+  EXPECT_EQ(Refusal({}), "");
+  ExpectRefused({"brake.charged_pressure_kpa=1100"}, "charged_pressure_kpa must be in [300, 1000]");
+  ExpectRefused({"brake.charged_pressure_kpa=200"}, "charged_pressure_kpa must be in [300, 1000]");
+  ExpectRefused({"brake.pipe.inner_diameter_mm=60"}, "inner_diameter_mm must be in [20, 50]");
+  ExpectRefused({"brake.closed_angle_cocks=[150]"}, "must be in [1, 149]");
+  ExpectRefused({"brake.parted_hoses=[{behind_vehicle: 150, time_s: 1}]"}, "must be in [1, 149]");
+  ExpectRefused({"brake.sources[0].vehicle=151"}, "sources[0].vehicle must be in [1, 150]");
+  ExpectRefused({"brake.equipment=[{from: 1, to: 2, valve: abc}]"}, "there is no \"abc\"");
+  ExpectRefused({"brake.equipment=[{from: 1, to: 5}, {from: 5, to: 6}]"},
+                "vehicle 5 is in brake.equipment[0], too");
+  ExpectRefused({"commands=[{time_s: 1, kind: apply, reduction_kpa: 100}, {time_s: 9, kind: apply, "
+                 "reduction_kpa: 50}]"},
+                "valves of direct release cannot let the brake down by steps");
+  ExpectRefused({"train.consist[1].vehicle.length_m=40"}, "longer than 38.1 m");
+}
+
+TEST(Scenario, WarnsOfMixedReleases) {
+  const auto loaded = config::LoadScenario(
+      ScenarioFile("full_service_ab"),
+      {"brake.valves=[{name: ab, kind: direct_release}, {name: p, kind: graduated_release}]",
+       "brake.equipment=[{from: 3, to: 5, valve: p}]"});
+  const auto tells = [&](const std::string& words) {
+    return std::any_of(loaded.warnings.begin(), loaded.warnings.end(),
+                       [&](const std::string& w) { return w.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(tells("147 valves of direct and 3 of graduated release"));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ constexpr const char* kDescription =
     "  train_sim route my_line.csv --plot my_line.svg\n"
     "  train_sim verify results/emergency\n"
     "  train_sim air-test config/scenarios/full_service_ab.yaml\n"
-    "  train_sim brake-weight config/scenarios/braked_weight.yaml\n"
+    "  train_sim brake-weight config/scenarios/mixed_g_p.yaml --set brake=uic_p\n"
     "  train_sim modes config/vehicles/ore_wagon.yaml\n"
     "  train_sim adhesion config/vehicles/ore_wagon.yaml --set wheel_rail.adhesion=wet\n"
     "\n"

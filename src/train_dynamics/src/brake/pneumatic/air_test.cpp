@@ -119,8 +119,8 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
   Bench charging(train, length_m);
   table.AddTime(
       "charging: tail at 95 % of the charged pressure",
-      charging.Until([&](const Bench& b) { return b.brake.TailPressure() > 0.95 * charged_pa; }, 1800.0),
-      1800.0);
+      charging.Until([&](const Bench& b) { return b.brake.TailPressure() > 0.95 * charged_pa; }, 3600.0),
+      3600.0);
 
   train.initial_pressure_kpa.reset();
   Bench leakage(train, length_m);
