@@ -16,7 +16,7 @@ struct Snapshot {
   std::vector<double> position_m, speed_mps, acceleration_mps2, creepage;
   std::vector<double> coupler_force_n;
   std::vector<double> cylinder_pressure_pa;
-  std::vector<double> pipe_pressure_pa;  ///< empty if the brake has no pipe
+  std::vector<double> pipe_pressure_pa;              ///< empty if the brake has no pipe
   std::optional<train_dynamics::WagonDetail> wagon;  ///< the followed one, if it is recorded in full detail
 };
 
