@@ -161,7 +161,7 @@ TEST(Locomotives, GoOnFromACheckpointToTheSameBits) {
 TEST(Locomotives, ObeyCommandsWithTheDelayOfTheirGroup) {
   const std::vector<std::string> more = {"duration_s=8", "initial_speed_kmh=10",
                                          "train.consist[2].command_delay_s=1.5",
-                                         "locomotive_commands=[{time_s: 1, kind: throttle, notch: 8}, "
+                                         "commands=[{time_s: 1, kind: throttle, notch: 8}, "
                                          "{time_s: 4, kind: throttle, notch: 0, vehicles: [1]}]"};
   PulledTrain train(more);
   train.master.Start();
@@ -187,24 +187,26 @@ TEST(Locomotives, ObeyCommandsWithTheDelayOfTheirGroup) {
 TEST(LocomotiveCommands, ThatTheTrainCannotObeyAreRefused) {
   const TrainParams train = config::LoadScenario(ScenarioFile("emergency"), kTrain).params.train;
   const auto text = [&train](const LocomotiveCommand& command) {
-    const std::vector<BrokenRule> broken = JudgeLocomotiveCommands({command}, train);
+    const std::vector<BrokenRule> broken = JudgeLocomotiveCommand(command, "commands[0]", train);
     return broken.empty() ? "" : broken[0].key + " " + broken[0].text;
   };
   EXPECT_EQ(text({0.0, LocomotiveCommandKind::kThrottle, 8.0, {}}), "");
   EXPECT_EQ(text({0.0, LocomotiveCommandKind::kDynamicBrake, 8.0, {1, 12}}), "");
   EXPECT_EQ(text({0.0, LocomotiveCommandKind::kThrottle, 9.0, {}}),
-            "locomotive_commands[0].notch must be at most 8, the highest notch of a throttle of this train");
+            "commands[0].notch must be at most 8, the highest notch of a throttle of this train");
   EXPECT_EQ(text({0.0, LocomotiveCommandKind::kThrottle, 8.0, {2}}),
-            "locomotive_commands[0].vehicles[0] must be a locomotive: a vehicle with traction");
+            "commands[0].vehicles[0] must be a locomotive: a vehicle with traction");
   EXPECT_NE(text({0.0, LocomotiveCommandKind::kThrottle, 8.0, {200}}), "");
   TrainParams without = train;
   without.consist[0].vehicle.traction->dynamic_brake.reset();
   const std::vector<BrokenRule> broken =
-      JudgeLocomotiveCommands({{0.0, LocomotiveCommandKind::kDynamicBrake, 4.0, {}}}, without);
+      JudgeLocomotiveCommand({0.0, LocomotiveCommandKind::kDynamicBrake, 4.0, {}}, "commands[0]", without);
   ASSERT_EQ(broken.size(), 1u);
-  EXPECT_EQ(broken[0].key, "locomotive_commands[0].kind");
+  EXPECT_EQ(broken[0].key, "commands[0].kind");
   without.consist = {train.consist[1]};
-  EXPECT_EQ(JudgeLocomotiveCommands({{0.0, LocomotiveCommandKind::kThrottle, 4.0, {}}}, without).size(), 1u);
+  EXPECT_EQ(
+      JudgeLocomotiveCommand({0.0, LocomotiveCommandKind::kThrottle, 4.0, {}}, "commands[0]", without).size(),
+      1u);
 }
 
 TEST(Locomotives, TrainsWithoutThemSendNothingOfThem) {

@@ -64,7 +64,7 @@ struct Recorded {
     master.Start();
     while (!master.Done()) master.Exchange();
     bag_recorder.Close();
-    csv_recorder.Close(master);
+    csv_recorder.Close();
     files = FilesBelow(outside);
   }
 

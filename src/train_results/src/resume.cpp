@@ -40,13 +40,11 @@ std::string FirstDifference(const std::string& now, const std::string& then) {
 /// The commands that the driver has given by then, as text.
 std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
   std::string text;
-  for (const train_dynamics::BrakeCommand& command : scenario.commands) {
-    if (command.time_s > time_s) continue;
-    const bool applies = command.kind == train_dynamics::BrakeCommandKind::kApply;
-    text += fmt::format("({:g} s: {}) ", command.time_s,
-                        applies ? fmt::format("apply {:g} kPa", command.reduction_kpa)
-                        : command.kind == train_dynamics::BrakeCommandKind::kRelease ? "release"
-                                                                                     : "emergency");
+  for (const train_dynamics::DriverCommand& command : scenario.commands) {
+    if (command.time_s.value_or(0.0) > time_s) continue;
+    text +=
+        fmt::format("({}: {}) ", command.time_s ? fmt::format("{:g} s", *command.time_s) : "on a condition",
+                    command.Text());
   }
   return text.empty() ? "none" : text.substr(0, text.size() - 1);
 }

@@ -219,49 +219,74 @@ double AirBrake::Phase::PressureAt(double time_s) const {
 
 AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
                    const std::vector<double>& vehicle_positions_m)
-    : emergency_(params.emergency),
-      positions_m_(vehicle_positions_m),
-      vehicle_phases_(vehicle_positions_m.size(), {Phase{}}) {
+    : params_(params), commands_(commands), positions_m_(vehicle_positions_m) {
   for (std::size_t k = 1; k < commands.size(); ++k) {
     if (commands[k].time_s < commands[k - 1].time_s) {
       throw std::invalid_argument("the times of brake commands must ascend");
     }
   }
-  const std::vector<Obeyed> obeyed = Obey(params, commands);
-  for (std::size_t k = 0; k < commands.size(); ++k) {
+  MakePhases();
+}
+
+void AirBrake::Command(const BrakeCommand& command) {
+  const auto at =
+      std::upper_bound(commands_.begin(), commands_.end(), command,
+                       [](const BrakeCommand& a, const BrakeCommand& b) { return a.time_s < b.time_s; });
+  const std::vector<BrakeCommand> before = commands_;
+  commands_.insert(at, command);
+  try {
+    MakePhases();
+  } catch (const std::invalid_argument&) {
+    commands_ = before;
+    MakePhases();
+    throw;
+  }
+}
+
+void AirBrake::MakePhases() {
+  vehicle_phases_.assign(positions_m_.size(), {Phase{}});
+  const std::vector<Obeyed> obeyed = Obey(params_, commands_);
+  for (std::size_t k = 0; k < commands_.size(); ++k) {
     const Effect effect = obeyed[k].effect;
     if (effect == Effect::kNone) continue;
-    const Course course = CourseOf(commands[k], effect, params);
-    const std::vector<WaveSource> sources = SourcesOf(params, IsRelease(effect), positions_m_);
+    const Course course = CourseOf(commands_[k], effect, params_);
+    const std::vector<WaveSource> sources = SourcesOf(params_, IsRelease(effect), positions_m_);
     for (std::size_t i = 0; i < positions_m_.size(); ++i) {
       const auto [arrival, distance] =
-          FirstWave(commands[k].time_s, positions_m_[i], sources, course.wave_speed_mps);
+          FirstWave(commands_[k].time_s, positions_m_[i], sources, course.wave_speed_mps);
       std::vector<Phase>& phases = vehicle_phases_[i];
       while (phases.size() > 1 && phases.back().begin_s >= arrival) phases.pop_back();  // overtaken
       const double begin_pa = phases.back().PressureAt(arrival);
       const double target_pa = IsRelease(effect) ? course.target_pa : std::max(course.target_pa, begin_pa);
-      const double rate_per_s = effect == Effect::kEmergency ? EmergencyRiseRate(emergency_, distance)
+      const double rate_per_s = effect == Effect::kEmergency ? EmergencyRiseRate(params_.emergency, distance)
                                 : begin_pa > target_pa       ? course.fall_per_s
                                                              : course.rise_per_s;
       phases.push_back({arrival, begin_pa, target_pa, rate_per_s, effect == Effect::kEmergency});
     }
   }
+  for (const Opening& opening : openings_) AddPhases(opening);
   Arrange();
 }
 
 void AirBrake::OpenPipe(double time_s, int connection) {
+  openings_.push_back({time_s, connection});
+  AddPhases(openings_.back());
+  Arrange();
+}
+
+void AirBrake::AddPhases(const Opening& opening) {
+  const EmergencyApplicationParams& emergency = params_.emergency;
   for (int i = 0; i < vehicles(); ++i) {
-    const double end_m = positions_m_[i <= connection ? connection : connection + 1];
+    const double end_m = positions_m_[i <= opening.connection ? opening.connection : opening.connection + 1];
     const auto [arrival, distance] =
-        FirstWave(time_s, positions_m_[i], {{end_m, 0.0}}, emergency_.wave_speed_mps);
+        FirstWave(opening.time_s, positions_m_[i], {{end_m, 0.0}}, emergency.wave_speed_mps);
     std::vector<Phase>& phases = vehicle_phases_[i];
     while (phases.size() > 1 && phases.back().begin_s >= arrival) phases.pop_back();
     if (phases.back().emergency) continue;
     const double begin_pa = phases.back().PressureAt(arrival);
-    phases.push_back({arrival, begin_pa, std::max(kPaPerKpa * emergency_.cylinder_pressure_kpa, begin_pa),
-                      EmergencyRiseRate(emergency_, distance), true});
+    phases.push_back({arrival, begin_pa, std::max(kPaPerKpa * emergency.cylinder_pressure_kpa, begin_pa),
+                      EmergencyRiseRate(emergency, distance), true});
   }
-  Arrange();
 }
 
 void AirBrake::Arrange() {

@@ -13,6 +13,11 @@ BrakePressures::BrakePressures(AirBrake brake, double dt_s, int steps)
   TakePhases();
 }
 
+void BrakePressures::Command(const BrakeCommand& command) {
+  brake_.Command(command);
+  TakePhases();
+}
+
 void BrakePressures::OpenPipe(double time_s, int connection) {
   brake_.OpenPipe(time_s, connection);
   TakePhases();

@@ -20,41 +20,39 @@ std::string WhyNot(const LocomotiveCommand& command, const TractionParams& tract
 
 }  // namespace
 
-std::vector<BrokenRule> JudgeLocomotiveCommands(const std::vector<LocomotiveCommand>& commands,
-                                                const TrainParams& train) {
+std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command, const std::string& key,
+                                               const TrainParams& train) {
   std::vector<BrokenRule> broken;
   const int count = train.VehicleCount();
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const LocomotiveCommand& command = commands[i];
-    const std::string key = "locomotive_commands[" + std::to_string(i) + "]";
-    std::vector<const TractionParams*> obey;
-    for (std::size_t j = 0; j < command.vehicles.size(); ++j) {
-      const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
-      const int vehicle = VehicleIndex(command.vehicles[j], count);
-      if (vehicle < 0) {
-        broken.push_back({entry, VehicleRule(count), {"train"}});
-      } else if (!train.VehicleAt(vehicle).traction) {
-        broken.push_back({entry, "must be a locomotive: a vehicle with traction", {"train"}});
-      } else {
-        obey.push_back(&*train.VehicleAt(vehicle).traction);
-      }
+  std::vector<const TractionParams*> obey;
+  for (std::size_t j = 0; j < command.vehicles.size(); ++j) {
+    const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
+    const int vehicle = VehicleIndex(command.vehicles[j], count);
+    if (vehicle < 0) {
+      broken.push_back({entry, VehicleRule(count), {"train"}});
+    } else if (!train.VehicleAt(vehicle).traction) {
+      broken.push_back({entry, "must be a locomotive: a vehicle with traction", {"train"}});
+    } else {
+      obey.push_back(&*train.VehicleAt(vehicle).traction);
     }
-    if (command.vehicles.empty()) {
-      for (const ConsistGroupParams& group : train.consist) {
-        if (group.vehicle.traction) obey.push_back(&*group.vehicle.traction);
-      }
-      if (obey.empty()) {
-        broken.push_back(
-            {key, "must not be given for a train without a locomotive: no vehicle has traction", {"train"}});
-      }
+  }
+  if (command.vehicles.empty()) {
+    for (const ConsistGroupParams& group : train.consist) {
+      if (group.vehicle.traction) obey.push_back(&*group.vehicle.traction);
     }
-    for (const TractionParams* traction : obey) {
-      const std::string why_not = WhyNot(command, *traction);
-      if (why_not.empty()) continue;
-      const bool is_kind = why_not.find("throttle for") != std::string::npos;
-      broken.push_back({key + (is_kind ? ".kind" : ".notch"), why_not, {"train"}});
-      break;
+    if (obey.empty()) {
+      broken.push_back({key + ".kind",
+                        "must not be throttle or dynamic_brake for a train without a locomotive: no vehicle "
+                        "has traction",
+                        {"train"}});
     }
+  }
+  for (const TractionParams* traction : obey) {
+    const std::string why_not = WhyNot(command, *traction);
+    if (why_not.empty()) continue;
+    const bool is_kind = why_not.find("throttle for") != std::string::npos;
+    broken.push_back({key + (is_kind ? ".kind" : ".notch"), why_not, {"train"}});
+    break;
   }
   return broken;
 }

@@ -7,7 +7,8 @@
 
 namespace train_dynamics {
 
-Locomotives::Locomotives(const Consist& consist, const std::vector<LocomotiveCommand>& commands) {
+Locomotives::Locomotives(const Consist& consist, const std::vector<LocomotiveCommand>& commands)
+    : vehicles_(consist.vehicles()) {
   for (int i = 0; i < consist.vehicles(); ++i) {
     const VehicleParams& vehicle = consist.vehicle(i);
     if (!vehicle.traction) continue;
@@ -15,17 +16,22 @@ Locomotives::Locomotives(const Consist& consist, const std::vector<LocomotiveCom
     drive.vehicle = i;
     drive.traction = *vehicle.traction;
     drive.driven_weight_n = vehicle.DrivenWeight();
-    const double delay_s = consist.command_delay_s[consist.vehicle_type[i]];
-    for (const LocomotiveCommand& command : commands) {
-      const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(), [&](int number) {
-        return VehicleIndex(number, consist.vehicles()) == i;
-      });
-      if (!command.vehicles.empty() && !is_named) continue;
-      drive.orders.push_back({command.time_s + delay_s, command.Notches()});
-    }
-    std::stable_sort(drive.orders.begin(), drive.orders.end(),
-                     [](const Order& a, const Order& b) { return a.time_s < b.time_s; });
+    drive.command_delay_s = consist.command_delay_s[consist.vehicle_type[i]];
     drives_.push_back(drive);
+  }
+  for (const LocomotiveCommand& command : commands) Command(command);
+}
+
+void Locomotives::Command(const LocomotiveCommand& command) {
+  for (Drive& drive : drives_) {
+    const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(), [&](int number) {
+      return VehicleIndex(number, vehicles_) == drive.vehicle;
+    });
+    if (!command.vehicles.empty() && !is_named) continue;
+    const Order order{command.time_s + drive.command_delay_s, command.Notches()};
+    const auto at = std::upper_bound(drive.orders.begin(), drive.orders.end(), order,
+                                     [](const Order& a, const Order& b) { return a.time_s < b.time_s; });
+    drive.orders.insert(at, order);
   }
 }
 

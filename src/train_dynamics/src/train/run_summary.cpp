@@ -120,6 +120,18 @@ void RunSummary::ForEachMemory(Self& self, Function& function) {
   }
 }
 
+std::string RunSummary::Commands(const TrainMaster& master) const {
+  std::string list;
+  for (const GivenCommand& given : master.schedule().Given()) {
+    list += std::string(list.empty() ? "" : ", ") +
+            "{\"time_s\": " + Number(static_cast<double>(given.exchange) * scenario_.exchange_interval_s) +
+            ", \"exchange\": " + std::to_string(given.exchange) +
+            ", \"command\": " + Quoted(given.command.Text()) +
+            ", \"live\": " + (given.is_live ? "true" : "false") + "}";
+  }
+  return list;
+}
+
 double RunSummary::Forward() const { return scenario_.MeanInitialSpeed() < 0.0 ? -1.0 : 1.0; }
 
 double RunSummary::BehindFurthest() const { return furthest_m_ - Forward() * mean_distance_m_; }
@@ -222,7 +234,11 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
        << ",\n  \"resumed_at_s\": " << (master.start_s() > 0.0 ? Number(master.start_s()) : "null")
        << ",\n  \"wall_s\": " << Number(wall_s) << ",\n  \"real_time_factor\": " << Number(own_s / wall_s)
        << ",\n  \"ns_per_vehicle_step\": " << Number(1e9 * wall_s / vehicle_steps)
-       << ",\n  \"complete\": " << (master.Done() ? "true" : "false")
+       << ",\n  \"complete\": " << (master.Done() ? "true" : "false") << ",\n  \"ended_by\": "
+       << (!master.Done()          ? "null"
+           : master.EndedByUntil() ? "\"until\""
+                                   : "\"duration_s\"")
+       << ",\n  \"commands\": [" << Commands(master) << "]"
        << ",\n  \"fault\": " << (fault.empty() ? "null" : Quoted(fault))
        << ",\n  \"final_speed_kmh\": {\"mean\": " << Number(kKmhPerMps * mean_speed_mps_)
        << ", \"lead\": " << Number(kKmhPerMps * lead_speed_mps_)

@@ -144,6 +144,23 @@ void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnin
 
 }  // namespace
 
+namespace {
+
+/// A text that speaks of commands[k], where k counts those of the brake, with the numbers of the whole list.
+std::string Renumbered(const std::string& text, const std::vector<std::size_t>& index) {
+  const std::string list = "commands[";
+  std::string renumbered;
+  std::size_t at = 0;
+  for (std::size_t found; (found = text.find(list, at)) != std::string::npos;) {
+    const std::size_t number = found + list.size(), end = text.find(']', number);
+    renumbered += text.substr(at, number - at) + std::to_string(index.at(std::stoul(text.substr(number))));
+    at = end;
+  }
+  return renumbered + text.substr(at);
+}
+
+}  // namespace
+
 int ScenarioParams::StepsPerExchange() const { return static_cast<int>(Parts(exchange_interval_s, dt_s)); }
 long ScenarioParams::Exchanges() const { return Parts(duration_s, exchange_interval_s); }
 int ScenarioParams::ExchangesPerRecord() const {
@@ -231,24 +248,45 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   }
   JudgeDips(broken);
   JudgeSlideProtection(broken);
-  for (const BrokenRule& rule : JudgeLocomotiveCommands(locomotive_commands, train)) broken.push_back(rule);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!commands[i].IsOfLocomotives()) continue;
+    for (const BrokenRule& rule :
+         JudgeLocomotiveCommand(commands[i].OfLocomotives(0.0), "commands" + Index(i), train))
+      broken.push_back(rule);
+  }
   return broken;
 }
 
 void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {
-  for (std::size_t i = 1; i < commands.size(); ++i) {
-    if (commands[i].time_s >= commands[i - 1].time_s) continue;
-    broken.push_back(
-        {"commands" + Index(i) + ".time_s",
-         "must be at least that of the command before, " + ShortestDecimal(commands[i - 1].time_s) + " s",
-         {"commands"}});
+  double last_s = 0.0;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!commands[i].time_s) continue;
+    if (*commands[i].time_s < last_s) {
+      broken.push_back({"commands" + Index(i) + ".time_s",
+                        "must be at least that of the command before, " + ShortestDecimal(last_s) + " s",
+                        {"commands"}});
+    }
+    last_s = *commands[i].time_s;
   }
 }
 
 void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
   if (!brake || !pressure_table.empty()) return;
-  const std::vector<BrokenRule> rules = brake->BrokenRules(commands, train.VehicleCount());
-  broken.insert(broken.end(), rules.begin(), rules.end());
+  const auto judge = [&](const std::vector<BrakeCommand>& of_brake, const std::vector<std::size_t>& index) {
+    for (const BrokenRule& rule : brake->BrokenRules(of_brake, train.VehicleCount())) {
+      const bool is_known = std::any_of(broken.begin(), broken.end(), [&](const BrokenRule& other) {
+        return other.key == Renumbered(rule.key, index);
+      });
+      if (!is_known)
+        broken.push_back({Renumbered(rule.key, index), Renumbered(rule.text, index), rule.reads});
+    }
+  };
+  std::vector<std::size_t> index;
+  const std::vector<BrakeCommand> timed = TimedBrakeCommands(commands, &index);
+  judge(timed, index);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!commands[i].time_s && !commands[i].IsOfLocomotives()) judge({commands[i].OfBrake(0.0)}, {i});
+  }
 }
 
 void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
@@ -403,8 +441,10 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   }
   if (!train.consist.empty()) WarnOfAdhesionLimit(scenario, warnings);
   if (scenario.brake && scenario.pressure_table.empty()) {
-    const std::vector<Warning> of_brake = scenario.brake->Warnings(scenario.commands, train.VehicleCount());
-    warnings.insert(warnings.end(), of_brake.begin(), of_brake.end());
+    std::vector<std::size_t> index;
+    const std::vector<BrakeCommand> timed = TimedBrakeCommands(scenario.commands, &index);
+    for (const Warning& warning : scenario.brake->Warnings(timed, train.VehicleCount()))
+      warnings.push_back({Renumbered(warning.key, index), Renumbered(warning.text, index)});
   }
   if (!scenario.pressure_table.empty()) {
     const std::string unused = " not used: the pressures come from pressure_table";
@@ -414,8 +454,13 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                           "the brake pipe stays closed where a connection breaks: the pressures come from "
                           "pressure_table"});
     }
-    if (!scenario.commands.empty())
-      warnings.push_back({"commands", "commands (" + Counted(scenario.commands.size()) + ") are" + unused});
+    const auto of_brake =
+        std::count_if(scenario.commands.begin(), scenario.commands.end(),
+                      [](const DriverCommand& command) { return !command.IsOfLocomotives(); });
+    if (of_brake > 0) {
+      warnings.push_back({"commands", "commands of the brake (" +
+                                          Counted(static_cast<std::size_t>(of_brake)) + ") are" + unused});
+    }
   }
   return warnings;
 }
@@ -423,7 +468,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
 BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist) {
   std::vector<double> length_m;
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
-  return {*scenario.brake, scenario.commands, consist.centre_m,
+  return {*scenario.brake, TimedBrakeCommands(scenario.commands), consist.centre_m,
           PressureGrid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()}, length_m};
 }
 

@@ -124,6 +124,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.brake);
   writer.Add(checkpoint.locomotives);
+  writer.Add(checkpoint.driver);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
   return Finish(writer);
@@ -148,6 +149,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.connections = reader.Numbers();
   checkpoint.brake = reader.Numbers();
   checkpoint.locomotives = reader.Numbers();
+  checkpoint.driver = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();
   reader.End();

@@ -14,9 +14,10 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
-      locomotives_(consist, scenario.locomotive_commands),
+      locomotives_(consist, TimedLocomotiveCommands(scenario.commands)),
       curves_(scenario.track, consist, scenario.start_position_m),
-      reply_(consist.vehicles(), scenario.DetailedVehicles()) {
+      reply_(consist.vehicles(), scenario.DetailedVehicles()),
+      schedule_(scenario.commands, scenario.until) {
   record_.vehicles = reply_;
   record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
@@ -44,6 +45,8 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   }
   forces_.SetMemory(checkpoint.connections);
   OpenPipes();
+  schedule_.SetMemory(checkpoint.driver);
+  for (const GivenCommand& given : schedule_.Given()) Give(given);
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
   brake.End();
@@ -76,6 +79,7 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   MemoryWriter locomotives;
   Locomotives(locomotives_).ForEachField(locomotives);
   checkpoint.locomotives = locomotives.Take();
+  checkpoint.driver = schedule_.Memory();
   return checkpoint;
 }
 
@@ -83,6 +87,7 @@ void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
   if (can_part_) OpenPipes();
+  if (!schedule_.empty()) GiveCommands();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
   locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
 
@@ -93,11 +98,13 @@ void TrainMaster::Exchange() {
   request_.exchange = exchange_;
   request_.record = RecordIsNext();
   const std::uint64_t next_record = next / scenario_.ExchangesPerRecord();
-  const bool last = static_cast<long>(next) == scenario_.Exchanges();
+  const bool ends = request_.record && schedule_.EndIsReached();
+  const bool last = ends || static_cast<long>(next) == scenario_.Exchanges();
   request_.ledger = request_.record && (last || next_record % scenario_.RecordsPerLedger() == 0);
   transport_.Exchange(request_, reply_);
 
   exchange_ = next;
+  has_ended_ = ends;
   if (reply_.fault.vehicle >= 0) {
     throw SimulationFault("vehicle " + std::to_string(reply_.fault.vehicle + 1) + ": " + reply_.fault.what +
                           " at t = " + std::to_string(time_s()) + " s");
@@ -111,6 +118,34 @@ void TrainMaster::OpenPipes() {
   const std::vector<Parting> partings = forces_.Partings();
   for (; opened_pipes_ < partings.size(); ++opened_pipes_) {
     brake_.OpenPipe(partings[opened_pipes_].time_s, partings[opened_pipes_].connection);
+  }
+}
+
+void TrainMaster::Command(const DriverCommand& command) {
+  if (!command.IsOfLocomotives())
+    BrakeSystem(brake_).Command(command.OfBrake(time_s()));  // of a copy: may it?
+  schedule_.Add(command);
+}
+
+void TrainMaster::GiveCommands() {
+  double mass = 0.0, momentum = 0.0;
+  for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+    mass += mass_kg_[i];
+    momentum += mass_kg_[i] * reply_.head_velocity_mps[i];
+  }
+  const std::size_t known = given_.size();
+  schedule_.Judge(
+      {exchange_, time_s(), scenario_.start_position_m + reply_.head_displacement_m[0], momentum / mass},
+      given_);
+  for (std::size_t i = known; i < given_.size(); ++i) Give(given_[i]);
+}
+
+void TrainMaster::Give(const GivenCommand& given) {
+  const double at_s = static_cast<double>(given.exchange) * scenario_.exchange_interval_s;
+  if (given.command.IsOfLocomotives()) {
+    locomotives_.Command(given.command.OfLocomotives(at_s));
+  } else {
+    brake_.Command(given.command.OfBrake(at_s));
   }
 }
 
@@ -148,6 +183,8 @@ void TrainMaster::ShowRecord() {
   brake_.PressuresAt(time_s(), record.cylinder_pressure_pa);
   if (const PneumaticBrake* machine = brake_.pneumatic()) machine->Record(record.brake);
   record.state_digest = digest_;
+  record.given = given_;
+  given_.clear();
   record.ledger.reset();
   if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
   if (exchange_ == 0) record.at_time_zero = {record.mean_position_m, record.ledger->Stored()};

@@ -208,6 +208,10 @@ class AirBrake {
 
   int vehicles() const { return static_cast<int>(positions_m_.size()); }
 
+  /// Another command, given while the others are under way. Those of later times go on to hold after it.
+  /// @throws std::invalid_argument as the constructor
+  void Command(const BrakeCommand& command);
+
   /// The brake pipe opens between vehicles `connection` and `connection` + 1, from 0: an emergency from there to both
   /// sides, which no command ends. Where an emergency holds already it goes on, for good.
   void OpenPipe(double time_s, int connection);
@@ -226,11 +230,20 @@ class AirBrake {
 
     double PressureAt(double time_s) const;
   };
+  struct Opening {
+    double time_s;
+    int connection;
+  };
+  /// The phases that the commands make, and then the openings of the pipe.
+  void MakePhases();
+  void AddPhases(const Opening& opening);
   /// Puts the phases side by side.
   void Arrange();
 
-  EmergencyApplicationParams emergency_;
+  AirBrakeParams params_;
+  std::vector<BrakeCommand> commands_;  ///< by time
   std::vector<double> positions_m_;
+  std::vector<Opening> openings_;
   std::vector<std::vector<Phase>> vehicle_phases_;  ///< [vehicle][phase]
   int stride_ = 0;
   std::vector<double> begin_s_, begin_pa_, target_pa_, rate_per_s_;  ///< [phase][vehicle]

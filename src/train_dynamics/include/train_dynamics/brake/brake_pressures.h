@@ -23,6 +23,8 @@ class BrakePressures {
   BrakePressures(AirBrake brake, double dt_s, int steps);
 
   /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
+  void Command(const BrakeCommand& command);
+  /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
   void OpenPipe(double time_s, int connection);
 
   /// @param time_s  the grid's time nearest to it is meant, t >= 0

@@ -50,6 +50,7 @@ struct PressureGrid {
 
 /// The brake of a train, one of a closed set of systems, chosen once per train. Each has
 ///
+///   Command(command)                   the driver does this, now or later; the other commands stay
 ///   OpenPipe(time_s, connection)       the brake pipe parts there: an emergency from both sides
 ///   PressuresAt(time_s, pressure_pa)   cylinder pressure of each vehicle [Pa]; times ascend
 ///   ForEachField(function)             calls function(number) for each number of its state
@@ -70,6 +71,11 @@ class BrakeSystem {
   /// Resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
     std::visit([&](auto& system) { system.PressuresAt(time_s + ahead_s_, pressure_pa); }, system_);
+  }
+  /// @throws std::invalid_argument if the system cannot obey
+  void Command(BrakeCommand command) {
+    command.time_s += ahead_s_;
+    std::visit([&](auto& system) { system.Command(command); }, system_);
   }
   void OpenPipe(double time_s, int connection) {
     std::visit([&](auto& system) { system.OpenPipe(time_s + ahead_s_, connection); }, system_);

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <stdexcept>
 #include <vector>
+
+#include "train_dynamics/brake/brake_command.h"
 
 namespace train_dynamics {
 
@@ -21,6 +24,10 @@ class PressureTable {
   /// Cylinder pressure of each vehicle [Pa] at a time; resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) const;
 
+  /// @throws std::invalid_argument  measured pressures obey no driver
+  void Command(const BrakeCommand& /*command*/) {
+    throw std::invalid_argument("the pressures come from pressure_table: they obey no command");
+  }
   /// Measured pressures do not answer.
   void OpenPipe(double /*time_s*/, int /*connection*/) {}
 

@@ -35,8 +35,9 @@ struct LocomotiveCommand {
   }
 };
 
-/// Rules between commands and the train that do not hold: each vehicle named is a locomotive, and each has the notch.
-std::vector<BrokenRule> JudgeLocomotiveCommands(const std::vector<LocomotiveCommand>& commands,
-                                                const TrainParams& train);
+/// Rules between a command and the train that do not hold: each vehicle named is a locomotive, and each has the notch.
+/// @param key  of the command, such as "commands[2]"
+std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command, const std::string& key,
+                                               const TrainParams& train);
 
 }  // namespace train_dynamics

@@ -24,6 +24,8 @@ class Locomotives {
   /// The index of locomotive i in the train; ascending.
   int vehicle(std::size_t i) const { return drives_[i].vehicle; }
   const TractionParams& traction(std::size_t i) const { return drives_[i].traction; }
+  /// Another command, given while the others are under way; it arrives by each group's delay later.
+  void Command(const LocomotiveCommand& command);
   /// What the driver asks of locomotive i from the next exchange on, until a command of the list comes.
   void SetCommand(std::size_t i, const NotchCommand& command) { drives_[i].command = command; }
   const DriveState& drive(std::size_t i) const { return drives_[i].state; }
@@ -65,6 +67,7 @@ class Locomotives {
     int vehicle;
     TractionParams traction;
     double driven_weight_n;
+    double command_delay_s;
     NotchCommand command;
     DriveState state;
     std::vector<Order> orders;  ///< by time
@@ -72,6 +75,7 @@ class Locomotives {
     std::size_t obeyed = 0;  ///< orders whose time has come
   };
 
+  int vehicles_;  ///< of the train
   std::vector<Drive> drives_;
 };
 

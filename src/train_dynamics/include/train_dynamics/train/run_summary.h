@@ -65,6 +65,8 @@ class RunSummary {
   std::string Stops() const;                          ///< as JSON objects
   std::string Slides() const;                         ///< as a JSON object
   std::string Twin(const TrainMaster& master) const;  ///< as a JSON object, or null
+  /// Those that were given to the running train, as JSON objects.
+  std::string Commands(const TrainMaster& master) const;
 
   /// A time at which the train came to a stand.
   struct Stop {

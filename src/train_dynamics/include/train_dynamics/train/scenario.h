@@ -8,7 +8,7 @@
 #include "train_dynamics/judgement.h"
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/train/consist.h"
-#include "train_dynamics/train/locomotive_command.h"
+#include "train_dynamics/train/driver_command.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 #include "train_dynamics/vehicle/vehicle_model.h"
 #include "train_dynamics/vehicle_number.h"
@@ -25,12 +25,12 @@ struct ScenarioParams {
   std::string
       pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
   std::optional<BrakeSystemParams> brake;  ///< computes the pressures from the driver's commands
-  std::vector<BrakeCommand> commands;
-  std::vector<LocomotiveCommand> locomotive_commands;
+  std::vector<DriverCommand> commands;
   double initial_speed_kmh = kRequired;
   double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
   SlackState initial_slack = SlackState::kStretched;
   double duration_s = kRequired;
+  std::optional<ConditionParams> until;  ///< ends the run earlier, at the next record
   double dt_s = 0.001;
   double exchange_interval_s = 0.001;  ///< a multiple of dt_s
   double record_interval_s = 0.01;     ///< a multiple of exchange_interval_s
@@ -49,7 +49,6 @@ struct ScenarioParams {
     v.Text("pressure_table", pressure_table);
     v.Part("brake", brake, "brakes");
     v.List("commands", commands);
-    v.List("locomotive_commands", locomotive_commands);
     v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
     v.Number("start_position_m", start_position_m, kFinite);
@@ -58,6 +57,7 @@ struct ScenarioParams {
               {"middle", SlackState::kMiddle},
               {"bunched", SlackState::kBunched}});
     v.Number("duration_s", duration_s, Range{0.0, 1e6});
+    v.Group("until", until);
     v.Number("dt_s", dt_s, Range{1e-6, 0.1, false, false});
     v.Number("exchange_interval_s", exchange_interval_s, kPositive);
     v.Number("record_interval_s", record_interval_s, kPositive);

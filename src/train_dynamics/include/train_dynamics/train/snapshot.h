@@ -37,6 +37,7 @@ struct TrainCheckpoint {
   std::vector<double> connections;  ///< InTrainForces::Memory
   std::vector<double> brake;        ///< BrakeSystem::ForEachField
   std::vector<double> locomotives;  ///< Locomotives::ForEachField
+  std::vector<double> driver;       ///< CommandSchedule::Memory
   std::vector<double> summary;      ///< RunSummary::Memory
   Bytes output;                     ///< what the recorders of the run need to go on
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/train/command_schedule.h"
 #include "train_dynamics/train/curving_loads.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
@@ -32,6 +33,7 @@ struct TrainRecord {
   BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
   std::optional<EnergyLedger> ledger;        ///< where one is due
+  std::vector<GivenCommand> given;           ///< since the record before
   TimeZero at_time_zero;                     ///< of the run, also where it was resumed later
 };
 
@@ -64,8 +66,16 @@ class TrainMaster {
   /// One exchange: the train moves on by one exchange interval.
   /// @throws SimulationFault naming the vehicle, the quantity and the time
   void Exchange();
-  long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run
-  bool Done() const { return static_cast<long>(exchange_) >= exchanges(); }
+  /// The driver does this at the start of the next exchange. The vehicles of the command and its notch must be checked,
+  /// see JudgeLocomotiveCommand.
+  /// @throws std::invalid_argument if the brake cannot obey; then nothing has changed
+  void Command(const DriverCommand& command);
+  const CommandSchedule& schedule() const { return schedule_; }
+
+  long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run, if `until` does not end it
+  bool Done() const { return has_ended_ || static_cast<long>(exchange_) >= exchanges(); }
+  /// Whether `until` has ended the run.
+  bool EndedByUntil() const { return has_ended_; }
 
   double time_s() const { return static_cast<double>(exchange_) * scenario_.exchange_interval_s; }
   std::uint64_t exchange() const { return exchange_; }
@@ -82,6 +92,8 @@ class TrainMaster {
   void ShowRecord();
   /// Tells the brake of connections that have broken since it was told last.
   void OpenPipes();
+  void GiveCommands();
+  void Give(const GivenCommand& given);
 
   const ScenarioParams& scenario_;
   Transport& transport_;
@@ -95,6 +107,9 @@ class TrainMaster {
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
   ExchangeReply reply_;
+  CommandSchedule schedule_;
+  std::vector<GivenCommand> given_;  ///< since the last record
+  bool has_ended_ = false;
   TrainRecord record_;  ///< the last one; keeps its memory from record to record
   std::vector<double> mass_kg_;
   std::vector<double> last_speed_mps_;

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/parameters.h"
+#include "train_dynamics/train/locomotive_command.h"
+
+namespace train_dynamics {
+
+/// Something that comes true on the way. All that is given must hold at one time.
+struct ConditionParams {
+  std::optional<double>
+      position_m;  ///< the centre of the first vehicle is there, or has passed it, either way
+  std::optional<double> speed_above_kmh, speed_below_kmh;  ///< bounds of the train's mean speed, either way
+  bool standing = false;  ///< the mean speed is at most 1 mm/s, or has just changed its sign
+  double delay_s = 0.0;   ///< what follows follows so much later
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("position_m", position_m, kFinite);
+    v.Number("speed_above_kmh", speed_above_kmh, kNonNegative);
+    v.Number("speed_below_kmh", speed_below_kmh, kPositive);
+    v.Flag("standing", standing);
+    v.Number("delay_s", delay_s, kNonNegative);
+    v.Check(position_m || speed_above_kmh || speed_below_kmh || standing, "position_m",
+            "must be given, or else speed_above_kmh, speed_below_kmh or standing",
+            {"speed_above_kmh", "speed_below_kmh", "standing"});
+    v.Check(!speed_above_kmh || !speed_below_kmh || *speed_above_kmh < *speed_below_kmh, "speed_above_kmh",
+            "must be below speed_below_kmh, or both never hold", {"speed_below_kmh"});
+  }
+};
+
+enum class DriverCommandKind { kApply, kEmergency, kRelease, kThrottle, kDynamicBrake };
+
+inline constexpr std::initializer_list<std::pair<const char*, DriverCommandKind>> kDriverCommandKinds = {
+    {"apply", DriverCommandKind::kApply},
+    {"emergency", DriverCommandKind::kEmergency},
+    {"release", DriverCommandKind::kRelease},
+    {"throttle", DriverCommandKind::kThrottle},
+    {"dynamic_brake", DriverCommandKind::kDynamicBrake}};
+
+const char* NameOf(DriverCommandKind kind);
+
+/// What the driver does, and when: at a time, when a condition has come true, or at an exchange (of a recorded run).
+struct DriverCommand {
+  std::optional<double> time_s;
+  DriverCommandKind kind = DriverCommandKind::kApply;
+  double reduction_kpa = kRequired;  ///< of the brake pipe in total, for kApply only
+  double notch = kRequired;          ///< of throttle or dynamic brake; 0: off
+  std::vector<int> vehicles;  ///< locomotives that obey throttle and dynamic brake, see LocomotiveCommand
+  std::optional<ConditionParams> when;
+  std::optional<double> exchange;  ///< at its start; of commands that were given to a running train
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("time_s", time_s, kNonNegative);
+    v.Group("when", when);
+    v.Number("exchange", exchange, Range{0.0, 1e12, false, false});
+    v.Choice("kind", kind, kDriverCommandKinds);
+    if (kind == DriverCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
+    if (IsOfLocomotives()) {
+      v.Number("notch", notch, Range{0.0, 100.0, false, false});
+      v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false});
+    }
+    const int times = (time_s ? 1 : 0) + (when ? 1 : 0) + (exchange ? 1 : 0);
+    v.Check(times > 0, "time_s", "must be given, or else when (a condition)", {"when", "exchange"});
+    v.Check(times < 2, "time_s", "must not be given beside when or exchange: a command has one time",
+            {"when", "exchange"});
+  }
+
+  bool IsOfLocomotives() const {
+    return kind == DriverCommandKind::kThrottle || kind == DriverCommandKind::kDynamicBrake;
+  }
+  /// The same for the brake, given at a time. Only of a command that is not of locomotives.
+  BrakeCommand OfBrake(double at_s) const;
+  /// The same for the locomotives, given at a time. Only of a command of locomotives.
+  LocomotiveCommand OfLocomotives(double at_s) const;
+  /// As "apply 50 kPa" or "throttle 8".
+  std::string Text() const;
+};
+
+/// Those with a time, for the brake, in the order of the list.
+/// @param index  of each in the list; null: not wanted
+std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
+                                             std::vector<std::size_t>* index = nullptr);
+/// Those with a time, for the locomotives, in the order of the list.
+std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverCommand>& commands);
+
+}  // namespace train_dynamics

@@ -1,0 +1,51 @@
+#include "train_dynamics/train/driver_command.h"
+
+namespace train_dynamics {
+
+const char* NameOf(DriverCommandKind kind) {
+  for (const auto& [name, known] : kDriverCommandKinds) {
+    if (known == kind) return name;
+  }
+  return "";
+}
+
+BrakeCommand DriverCommand::OfBrake(double at_s) const {
+  const BrakeCommandKind of_brake = kind == DriverCommandKind::kApply       ? BrakeCommandKind::kApply
+                                    : kind == DriverCommandKind::kEmergency ? BrakeCommandKind::kEmergency
+                                                                            : BrakeCommandKind::kRelease;
+  return {at_s, of_brake, reduction_kpa};
+}
+
+LocomotiveCommand DriverCommand::OfLocomotives(double at_s) const {
+  const LocomotiveCommandKind of_locomotives = kind == DriverCommandKind::kThrottle
+                                                   ? LocomotiveCommandKind::kThrottle
+                                                   : LocomotiveCommandKind::kDynamicBrake;
+  return {at_s, of_locomotives, notch, vehicles};
+}
+
+std::string DriverCommand::Text() const {
+  const std::string name = NameOf(kind);
+  if (kind == DriverCommandKind::kApply) return name + " " + ShortestDecimal(reduction_kpa) + " kPa";
+  return IsOfLocomotives() ? name + " " + ShortestDecimal(notch) : name;
+}
+
+std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
+                                             std::vector<std::size_t>* index) {
+  std::vector<BrakeCommand> timed;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (commands[i].IsOfLocomotives() || !commands[i].time_s) continue;
+    timed.push_back(commands[i].OfBrake(*commands[i].time_s));
+    if (index != nullptr) index->push_back(i);
+  }
+  return timed;
+}
+
+std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverCommand>& commands) {
+  std::vector<LocomotiveCommand> timed;
+  for (const DriverCommand& command : commands) {
+    if (command.IsOfLocomotives() && command.time_s) timed.push_back(command.OfLocomotives(*command.time_s));
+  }
+  return timed;
+}
+
+}  // namespace train_dynamics
