@@ -125,7 +125,8 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
       clock_(node, options.global_clock),
       state_topic_(node, "state", kQueue),
       forces_topic_(node, "in_train_forces", kQueue),
-      pressures_topic_(node, "brake_pressures", kQueue) {
+      pressures_topic_(node, "brake_pressures", kQueue),
+      commands_(scenario_.params) {
   for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
   const int vehicles = scenario_.consist.vehicles();
   if (options.vehicles != 0 && options.vehicles != vehicles) {
@@ -142,6 +143,9 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   slides_publisher_ = node.advertise<train_brake_msgs::Slides>("slides", kQueue, true);
   scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
   scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
+  given_publisher_ = node.advertise<train_brake_msgs::GivenCommand>(train_results::kGivenTopic, kQueue, true);
+  command_subscriber_ = node.subscribe("driver/command", kQueue, &MasterNode::OnCommand, this);
+  services_.push_back(node.advertiseService("driver/give", &MasterNode::OnGive, this));
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
   services_.push_back(own.advertiseService("pause", &MasterNode::OnPause, this));
   services_.push_back(own.advertiseService("resume", &MasterNode::OnResume, this));
@@ -266,7 +270,16 @@ void MasterNode::Go(train_run::TrainRun& run) {
     return true;
   };
   hooks.admits = [&] {
-    if (control_.Admit(master.time_s())) return true;
+    if (control_.Admit(master.time_s())) {
+      for (const train_dynamics::DriverCommand& command : commands_.Take(master.exchange())) {
+        try {
+          run.Command(command);
+        } catch (const std::invalid_argument& e) {
+          ROS_WARN("the command %s is not given: %s", command.Text().c_str(), e.what());
+        }
+      }
+      return true;
+    }
     Settle(master.time_s());
     return false;
   };
@@ -302,6 +315,11 @@ void MasterNode::Publish(const TrainRecord& record) {
   if (!record.slides.empty()) {
     train_results::Convert(record, slides_);
     slides_publisher_.publish(slides_);
+  }
+  for (const train_dynamics::GivenCommand& given : record.given) {
+    train_brake_msgs::GivenCommand message;
+    train_results::Convert(given, record.time_s, message);
+    given_publisher_.publish(message);
   }
   live_.Show(record, PaceNow());
 }
@@ -342,6 +360,10 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
   add("real_time_factor", fmt::format("{:.2f}", real_time_factor_));
   add("exchange_p50_ms", fmt::format("{:.3f}", 1e3 * statistics_.Quantile(0.50)));
   add("exchange_p99_ms", fmt::format("{:.3f}", 1e3 * statistics_.Quantile(0.99)));
+  if (commands_.count() > 0) {
+    add("live_commands", std::to_string(commands_.count()));
+    add("live_command_latency_max_exchanges", std::to_string(commands_.largest_latency()));
+  }
   if (ranks_ != nullptr) {
     const auto slowest = std::max_element(last_count_.begin(), last_count_.end()) - last_count_.begin();
     add("ranks", std::to_string(last_count_.size()));
@@ -381,6 +403,27 @@ bool MasterNode::OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Reques
     Answer(control_.SetRealTimeFactor(factor), response);
   } else {
     response.message = fmt::format("real_time_factor must be >= 0, got {}", factor);
+  }
+  return true;
+}
+
+void MasterNode::OnCommand(const train_brake_msgs::DriverCommand& message) {
+  try {
+    commands_.Receive(message);
+  } catch (const std::invalid_argument& e) {
+    ROS_WARN("a command on driver/command is refused: %s", e.what());
+  }
+}
+
+bool MasterNode::OnGive(train_brake_msgs::GiveCommand::Request& request,
+                        train_brake_msgs::GiveCommand::Response& response) {
+  try {
+    response.exchange = commands_.Receive(request.command);
+    response.success = true;
+    response.message =
+        fmt::format("given at the start of exchange {} or, in a pause, later", response.exchange);
+  } catch (const std::invalid_argument& e) {
+    response.message = e.what();
   }
   return true;
 }

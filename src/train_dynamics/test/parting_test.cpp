@@ -95,12 +95,14 @@ TEST(Parting, OpensTheBrakePipeAndBothPartsStopByAnEmergency) {
   ASSERT_FALSE(partings.empty());
   // Cylinders beside the first parting follow an emergency from there: Eq 2 with its rate at the source.
   const Parting first = partings[0];
-  AirBrake expected(loaded.params.brake->empirical, loaded.params.commands, loaded.consist.centre_m);
+  AirBrake expected(loaded.params.brake->empirical, TimedBrakeCommands(loaded.params.commands),
+                    loaded.consist.centre_m);
   for (const Parting& parting : partings) expected.OpenPipe(parting.time_s, parting.connection);
   std::vector<double> law_pa;
   expected.PressuresAt(60.0, law_pa);
   for (std::size_t i = 0; i < law_pa.size(); ++i) EXPECT_NEAR(last_pressure_pa[i], law_pa[i], 1e-3) << i;
-  AirBrake service(loaded.params.brake->empirical, loaded.params.commands, loaded.consist.centre_m);
+  AirBrake service(loaded.params.brake->empirical, TimedBrakeCommands(loaded.params.commands),
+                   loaded.consist.centre_m);
   std::vector<double> service_pa;
   service.PressuresAt(60.0, service_pa);
   EXPECT_GT(law_pa[first.connection], service_pa[first.connection] + 10e3);

@@ -35,6 +35,7 @@ BagRecorder::BagRecorder(const std::string& file, const Bytes& checkpoint, int v
     *topic = below(bag_.topics(), "topic");
   }
   slides_topic_ = below(bag_.topics() + 1, "topic") - 1;
+  given_topic_ = below(bag_.topics() + 1, "topic") - 1;
   for (std::uint64_t count = reader.Word(); count > 0; --count) {
     const int vehicle = below(vehicles, "vehicle");
     wagon_topic_[vehicle] = below(bag_.topics(), "topic");
@@ -49,6 +50,7 @@ Bytes BagRecorder::Checkpoint() {
     writer.Add(static_cast<std::uint64_t>(topic));
   }
   writer.Add(static_cast<std::uint64_t>(slides_topic_ + 1));
+  writer.Add(static_cast<std::uint64_t>(given_topic_ + 1));
   writer.Add(std::uint64_t{wagon_topic_.size()});
   for (const auto& [vehicle, topic] : wagon_topic_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
@@ -74,6 +76,12 @@ void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
     if (slides_topic_ < 0) slides_topic_ = bag_.AddTopic<train_brake_msgs::Slides>("/train/slides");
     Convert(record, slides_);
     bag_.Write(slides_topic_, time, slides_);
+  }
+  for (const train_dynamics::GivenCommand& given : record.given) {
+    if (given_topic_ < 0)
+      given_topic_ = bag_.AddTopic<train_brake_msgs::GivenCommand>(std::string("/train/") + kGivenTopic);
+    Convert(given, record.time_s, given_);
+    bag_.Write(given_topic_, time, given_);
   }
   const int vehicles = static_cast<int>(record.vehicles.position_m.size());
   for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {

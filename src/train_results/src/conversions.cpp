@@ -1,8 +1,12 @@
 #include "train_results/conversions.h"
 
+#include <fmt/format.h>
 #include <train_brake_msgs/wagon_detail.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "strict_config/writer.h"
@@ -93,6 +97,45 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
   message.front_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle]);
   message.rear_coupler_force_n = static_cast<float>(record.held.coupler_force_n[detail.vehicle + 1]);
   message.cylinder_pressure_pa = static_cast<float>(record.held.cylinder_pressure_pa[detail.vehicle]);
+}
+
+void Convert(const train_dynamics::GivenCommand& given, double time_s,
+             train_brake_msgs::GivenCommand& message) {
+  message.header.stamp.fromSec(time_s);
+  message.exchange = given.exchange;
+  message.command.kind = train_dynamics::NameOf(given.command.kind);
+  const bool applies = given.command.kind == train_dynamics::DriverCommandKind::kApply;
+  message.command.reduction_kpa = applies ? given.command.reduction_kpa : 0.0;
+  message.command.notch = given.command.IsOfLocomotives() ? given.command.notch : 0.0;
+  message.command.vehicles.assign(given.command.vehicles.begin(), given.command.vehicles.end());
+  message.live = given.is_live;
+}
+
+train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message,
+                                        std::uint64_t exchange) {
+  train_dynamics::DriverCommand command;
+  command.exchange = static_cast<double>(exchange);
+  std::string known;
+  bool is_known = false;
+  for (const auto& [name, kind] : train_dynamics::kDriverCommandKinds) {
+    known += (known.empty() ? "" : ", ") + std::string(name);
+    if (message.kind != name) continue;
+    is_known = true;
+    command.kind = kind;
+  }
+  if (!is_known) throw std::invalid_argument("kind must be one of " + known + ", got '" + message.kind + "'");
+  if (command.kind == train_dynamics::DriverCommandKind::kApply) {
+    if (!(std::isfinite(message.reduction_kpa) && message.reduction_kpa > 0.0))
+      throw std::invalid_argument(fmt::format("reduction_kpa must be > 0, got {}", message.reduction_kpa));
+    command.reduction_kpa = message.reduction_kpa;
+  }
+  if (command.IsOfLocomotives()) {
+    if (!(std::isfinite(message.notch) && message.notch >= 0.0))
+      throw std::invalid_argument(fmt::format("notch must be >= 0, got {}", message.notch));
+    command.notch = message.notch;
+    command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
+  }
+  return command;
 }
 
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario) {

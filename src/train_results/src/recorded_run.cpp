@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <ros/message_traits.h>
 #include <std_msgs/String.h>
+#include <train_brake_msgs/bounded_stream.h>
 
 #include <set>
 
@@ -81,6 +82,24 @@ RecordedRun::RecordedRun(const std::string& file, const std::string& train)
 RecordedTopic* RecordedRun::wagon(const std::string& name) {
   const auto found = wagons_.find(name);
   return found == wagons_.end() ? nullptr : found->second.get();
+}
+
+std::vector<train_dynamics::DriverCommand> RecordedRun::LiveCommands() {
+  std::vector<train_dynamics::DriverCommand> commands;
+  for (const BagFile::Topic& topic : bag_.topics()) {
+    if (topic.name != train_ + "/" + kGivenTopic || !IsOf<train_brake_msgs::GivenCommand>(topic)) continue;
+    for (const auto& place : topic.messages) {
+      Bytes bytes = bag_.Read(place);
+      train_brake_msgs::GivenCommand given;
+      try {
+        train_brake_msgs::ReadMessage(bytes.data(), static_cast<std::uint32_t>(bytes.size()), given);
+        if (given.live) commands.push_back(CommandOf(given.command, given.exchange));
+      } catch (const std::exception& e) {
+        throw UnreadableBag(topic.name + " has a command that cannot be read: " + e.what());
+      }
+    }
+  }
+  return commands;
 }
 
 std::optional<std::string> RecordedRun::Scenario() {

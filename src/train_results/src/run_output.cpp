@@ -31,7 +31,8 @@ fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolu
 
 bool IsResult(const std::string& name) {
   static const std::regex pattern(
-      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|checkpoint|branched_from)(\\."
+      "train\\.bag(\\.active)?|(report\\.html|summary\\.json|config\\.yaml|replay\\.yaml|checkpoint|branched_"
+      "from)(\\."
       "unfinished)?|"
       "(pressure_table|train_history|pressures|couplers|vehicles|slides|track_wear|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
@@ -75,6 +76,23 @@ void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
   WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + strict_config::Write(scenario));
 }
 
+/// The scenario of a run that was given live commands: with them, each at its exchange.
+void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule& schedule,
+                 const fs::path& folder) {
+  bool is_live = false;
+  for (const train_dynamics::GivenCommand& given : schedule.Given()) {
+    if (!given.is_live) continue;
+    is_live = true;
+    scenario.commands.push_back(given.command);
+    scenario.commands.back().exchange = static_cast<double>(given.exchange);
+  }
+  if (!is_live) return;
+  if (!scenario.pressure_table.empty()) scenario.pressure_table = "pressure_table.csv";
+  WriteFile(folder / "replay.yaml",
+            "# A run with live commands, as a scenario: running it gives the same bits.\n" +
+                strict_config::Write(scenario));
+}
+
 /// What recorders write and go on with.
 bool IsRecord(const std::string& name) {
   static const std::regex pattern(
@@ -112,6 +130,7 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
                      const ScenarioParams& scenario)
     : options_(options),
       folder_(options.folder),
+      scenario_(scenario),
       identity_(IdentityOf(scenario)),
       checkpoint_exchanges_(CheckpointExchanges(options, scenario)) {
   if (folder_.empty()) return;
@@ -135,6 +154,7 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
 RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
     : options_(options),
       folder_(options.folder.empty() ? run.folder : fs::path(options.folder)),
+      scenario_(run.scenario.params),
       identity_(IdentityOf(run.scenario.params)),
       checkpoint_exchanges_(CheckpointExchanges(options, run.scenario.params)) {
   const bool is_elsewhere = fs::weakly_canonical(folder_) != fs::weakly_canonical(run.folder);
@@ -164,7 +184,8 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   if (csv_ != nullptr) csv_->GoOn();
   if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
-  for (const char* old : {"summary.json", "couplers.csv", "slides.csv", "track_wear.csv", "report.html"})
+  for (const char* old :
+       {"summary.json", "couplers.csv", "slides.csv", "track_wear.csv", "replay.yaml", "report.html"})
     fs::remove(folder_ / old);
   StartThread();
 }
@@ -233,6 +254,7 @@ void RunOutput::Finish(const train_dynamics::TrainMaster& master, const train_dy
   attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
   attempt([&] { WriteSlideTables(folder_, summary.slides()); });
   attempt([&] { WriteCouplerTable(folder_, master); });
+  attempt([&] { WriteReplay(scenario_, master.schedule(), folder_); });
   if (csv_ != nullptr) attempt([&] { csv_->Close(); });
   if (error != nullptr) std::rethrow_exception(error);
 }

@@ -43,7 +43,7 @@ double StoppingDistance(ScenarioParams params, double speed_kmh) {
   for (auto& group : params.train.consist) group.model.reset();
   params.detail_vehicles.clear();
   params.track.grades.clear();
-  params.commands = {{0.0, BrakeCommandKind::kEmergency}};
+  params.commands = {{0.0, train_dynamics::DriverCommandKind::kEmergency}};
   params.initial_speed_kmh = speed_kmh;
   params.duration_s = 600.0;
   params.dt_s = params.exchange_interval_s = 0.001;

@@ -250,6 +250,13 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::optional<std::string> summarised = DigestInSummary(options.recording);
   LoadedScenario scenario = ScenarioOf(options, recorded);
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
+  for (const train_dynamics::DriverCommand& command : recorded.LiveCommands()) {
+    const auto& known = scenario.params.commands;  // of a replay.yaml, too
+    const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& other) {
+      return other.exchange == command.exchange && other.Text() == command.Text();
+    });
+    if (!is_known) scenario.params.commands.push_back(command);
+  }
   const ScenarioParams& params = scenario.params;
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
   Comparison comparison(recorded, scenario.consist.vehicles());
@@ -285,8 +292,9 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
     fmt::print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
     return train_run::kInterrupted;
   }
-  const long all =
-      (params.Exchanges() - static_cast<long>(first)) / params.ExchangesPerRecord() + (branch ? 0 : 1);
+  const long end =
+      master.EndedByUntil() ? static_cast<long>(master.exchange()) : params.Exchanges();  // of the run
+  const long all = (end - static_cast<long>(first)) / params.ExchangesPerRecord() + (branch ? 0 : 1);
   const char* const covered =
       comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
   if (!master.Done()) {
@@ -303,7 +311,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::string begin =
       branch ? fmt::format("from {:g} s, where it left another run, ", run.start_s()) : "";
   fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
-             scenario.consist.vehicles(), begin, params.duration_s, digest, covered, comparison.Missing());
+             scenario.consist.vehicles(), begin, master.time_s(), digest, covered, comparison.Missing());
   return train_run::kSuccess;
 }
 

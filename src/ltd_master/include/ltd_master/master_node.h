@@ -3,6 +3,8 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
+#include <train_brake_msgs/GiveCommand.h>
+#include <train_brake_msgs/GivenCommand.h>
 #include <train_brake_msgs/SetRealTimeFactor.h>
 #include <train_brake_msgs/StepExchanges.h>
 
@@ -15,6 +17,7 @@
 #include <vector>
 
 #include "ltd_master/exchange_statistics.h"
+#include "ltd_master/live_commands.h"
 #include "ltd_master/live_topics.h"
 #include "ltd_master/ranks/ros_transport.h"
 #include "ltd_master/record_topic.h"
@@ -60,7 +63,9 @@ struct MasterOptions {
 ///   publishes   state  in_train_forces  brake_pressures  energy_ledger  (every record)   /diagnostics
 ///               clock, /clock (see SimulatedClock)
 ///               scenario (once, with everything resolved)   live/... (see LiveTopics)
-///   services    ~pause  ~resume  ~step  ~set_real_time_factor   ~identify (what runs here, since when)
+///               driver/given (commands that took effect)
+///   subscribes  driver/command (see LiveCommands)
+///   services    driver/give   ~pause  ~resume  ~step  ~set_real_time_factor   ~identify (what runs here, since when)
 class MasterNode {
  public:
   MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::NodeHandle own);
@@ -84,6 +89,9 @@ class MasterNode {
               train_brake_msgs::StepExchanges::Response& response);
   bool OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
                            train_brake_msgs::SetRealTimeFactor::Response& response);
+  void OnCommand(const train_brake_msgs::DriverCommand& message);
+  bool OnGive(train_brake_msgs::GiveCommand::Request& request,
+              train_brake_msgs::GiveCommand::Response& response);
   bool OnIdentify(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
 
   using Clock = std::chrono::steady_clock;
@@ -106,6 +114,9 @@ class MasterNode {
   RecordTopic<train_brake_msgs::TrainState> state_topic_;
   RecordTopic<train_brake_msgs::InTrainForces> forces_topic_;
   RecordTopic<train_brake_msgs::BrakePressures> pressures_topic_;
+  LiveCommands commands_;
+  ros::Subscriber command_subscriber_;
+  ros::Publisher given_publisher_;
   ros::Publisher ledger_publisher_, slides_publisher_, scenario_publisher_, diagnostics_publisher_;
   std::vector<ros::ServiceServer> services_;
   train_brake_msgs::TrainState state_;

@@ -34,6 +34,7 @@ class BagRecorder {
   BagWriter bag_;
   int state_topic_ = 0, forces_topic_ = 0, pressures_topic_ = 0, ledger_topic_ = 0;
   int slides_topic_ = -1;           ///< below 0: nothing has slid yet
+  int given_topic_ = -1;            ///< < 0: no command was given so far
   std::map<int, int> wagon_topic_;  ///< by vehicle
   train_brake_msgs::TrainState state_;
   train_brake_msgs::InTrainForces forces_;
@@ -41,6 +42,7 @@ class BagRecorder {
   train_brake_msgs::EnergyLedger ledger_;
   train_brake_msgs::Slides slides_;
   train_brake_msgs::WagonState wagon_;
+  train_brake_msgs::GivenCommand given_;
 };
 
 }  // namespace train_results

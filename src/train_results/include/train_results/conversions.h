@@ -2,7 +2,9 @@
 
 #include <std_msgs/String.h>
 #include <train_brake_msgs/BrakePressures.h>
+#include <train_brake_msgs/DriverCommand.h>
 #include <train_brake_msgs/EnergyLedger.h>
+#include <train_brake_msgs/GivenCommand.h>
 #include <train_brake_msgs/InTrainForces.h>
 #include <train_brake_msgs/Slides.h>
 #include <train_brake_msgs/TrainState.h>
@@ -23,6 +25,18 @@ void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::Energy
 
 void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::WagonDetail& detail,
              train_brake_msgs::WagonState& message);
+
+/// @param time_s  of the first record after it
+void Convert(const train_dynamics::GivenCommand& given, double time_s,
+             train_brake_msgs::GivenCommand& message);
+
+/// A command for the start of an exchange, from a message.
+/// @throws std::invalid_argument if there is no such kind, or the number that belongs to it is missing
+train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message,
+                                        std::uint64_t exchange);
+
+/// Topic of the commands that were given to the running train, in its namespace.
+inline constexpr const char* kGivenTopic = "driver/given";
 
 /// Topic of the scenario, in the namespace of the train; once in a run.
 inline constexpr const char* kScenarioTopic = "scenario";

@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "train_dynamics/train/driver_command.h"
 #include "train_results/bag_file.h"
 
 namespace train_results {
@@ -45,6 +47,10 @@ class RecordedRun {
 
   /// The whole scenario as YAML, if the bag has it.
   std::optional<std::string> Scenario();
+
+  /// The commands that were given live, as those of their exchanges.
+  /// @throws UnreadableBag if one of them is damaged
+  std::vector<train_dynamics::DriverCommand> LiveCommands();
 
   RecordedTopic& state() { return *state_; }
   /// These are null where the bag has none.

@@ -43,6 +43,7 @@ struct OutputOptions {
 ///   checkpoint    now and then, and at the end: where the run can be resumed
 ///   couplers.csv  at the end: the largest forces of every connection, of all exchanges
 ///   slides.csv, track_wear.csv  at the end: see slide_tables.h
+///   replay.yaml   at the end of a run with live commands: the scenario with them, runs again to the same bits
 ///   summary.json  at the end; its absence tells that the run was cut off
 class RunOutput {
  public:
@@ -83,6 +84,7 @@ class RunOutput {
   OutputOptions options_;
   std::filesystem::path folder_;
   std::optional<FolderLock> lock_;
+  train_dynamics::ScenarioParams scenario_;
   std::string identity_;       ///< of the scenario, see IdentityOf
   long checkpoint_exchanges_;  ///< from one to the next; 0: none
   std::exception_ptr error_;   ///< the first, where the run goes on

@@ -61,6 +61,9 @@ class TrainRun {
   /// What the user should know of the run beside its summary; empty: nothing.
   std::string Warning() const { return summary_.RouteWarning(); }
 
+  /// See TrainMaster::Command; between two exchanges.
+  void Command(const train_dynamics::DriverCommand& command) { master_.Command(command); }
+
   const train_dynamics::TrainMaster& master() const { return master_; }
   const train_dynamics::RunSummary& summary() const { return summary_; }
   /// See RunSummary::SetTwin.

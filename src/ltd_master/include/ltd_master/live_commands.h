@@ -1,0 +1,44 @@
+#pragma once
+
+#include <train_brake_msgs/DriverCommand.h>
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "train_dynamics/train/scenario.h"
+
+namespace ltd_master {
+
+/// Commands of a driver who sits in another node: received at any time, by any thread, given to the train at the start of an
+/// exchange, in the order of their arrival.
+class LiveCommands {
+ public:
+  /// Keeps a reference.
+  explicit LiveCommands(const train_dynamics::ScenarioParams& scenario) : scenario_(scenario) {}
+
+  /// @return the exchange at whose start it is given at the earliest
+  /// @throws std::invalid_argument  naming what is wrong: no such kind, a number out of range, no such locomotive
+  std::uint64_t Receive(const train_brake_msgs::DriverCommand& message);
+
+  /// The run's side: those that are due before the exchange that begins now; it is the one of this number.
+  std::vector<train_dynamics::DriverCommand> Take(std::uint64_t exchange);
+
+  /// Of all commands taken so far: the most exchanges between its receipt and its effect, and how many commands.
+  std::uint64_t largest_latency() const;
+  std::uint64_t count() const;
+
+ private:
+  struct Received {
+    train_dynamics::DriverCommand command;
+    std::uint64_t exchange;  ///< that was the next when it came
+  };
+
+  const train_dynamics::ScenarioParams& scenario_;
+  mutable std::mutex mutex_;
+  std::vector<Received> received_;
+  std::uint64_t next_exchange_ = 0, largest_latency_ = 0, count_ = 0;
+};
+
+}  // namespace ltd_master

@@ -1,0 +1,65 @@
+#include "ltd_master/live_commands.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "train_results/conversions.h"
+
+namespace ltd_master {
+namespace {
+
+using train_dynamics::BrokenRule;
+using train_dynamics::DriverCommand;
+
+/// What a command breaks in a train, as a sentence; empty: nothing.
+std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioParams& scenario) {
+  if (!command.IsOfLocomotives() && !scenario.pressure_table.empty())
+    return "the pressures of the brake come from pressure_table: it obeys no command";
+  const std::vector<BrokenRule> broken =
+      command.IsOfLocomotives()
+          ? train_dynamics::JudgeLocomotiveCommand(command.OfLocomotives(0.0), "command", scenario.train)
+          : scenario.brake->BrokenRules({command.OfBrake(0.0)}, scenario.train.VehicleCount());
+  if (broken.empty()) return "";
+  const std::string& key = broken.front().key;  // "commands[0].reduction_kpa", "command.notch"
+  return key.substr(key.find('.') + 1) + " " + broken.front().text;
+}
+
+}  // namespace
+
+std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& message) {
+  const DriverCommand command = train_results::CommandOf(message, 0);
+  const std::string why_not = WhyNot(command, scenario_);
+  if (!why_not.empty()) throw std::invalid_argument(why_not);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  received_.push_back({command, next_exchange_});
+  return next_exchange_;
+}
+
+std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (next_exchange_ == 0) {  // a run that goes on from a checkpoint begins later
+    for (Received& received : received_) received.exchange = exchange;
+  }
+  next_exchange_ = exchange + 1;  // what comes from now on is too late for this one
+  if (received_.empty()) return {};
+  std::vector<DriverCommand> due;
+  for (const Received& received : received_) {
+    due.push_back(received.command);
+    largest_latency_ = std::max(largest_latency_, exchange - received.exchange);
+    ++count_;
+  }
+  received_.clear();
+  return due;
+}
+
+std::uint64_t LiveCommands::largest_latency() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return largest_latency_;
+}
+
+std::uint64_t LiveCommands::count() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return count_;
+}
+
+}  // namespace ltd_master
