@@ -79,13 +79,20 @@ class Matrix(unittest.TestCase):
         return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6",
                       f"nodes:={nodes}", f"set:={self.settings}", *arguments)
 
-    def launch_nodes(self, *nodes, **parameters):
-        """A train of two ranks with those nodes (XML), which are not respawned. @param parameters  of its master"""
+    def launch_nodes(self, *nodes, behind="", **parameters):
+        """A train of two ranks with those nodes (XML), which are not respawned. @param behind  redirections of its master
+        in the shell. @param parameters  of its master"""
         values = {"scenario": SHORT_TRAIN, "ranks": 2, "real_time_factor": 1.0, "set": self.settings, **parameters}
         text = "".join(f'<param name="{name}" value="{value}"/>' for name, value in values.items())
         file = self.folder / "nodes.launch"
+        prefix = ""
+        if behind:
+            script = self.folder / "behind.sh"
+            script.write_text(f'#!/bin/bash\n{behind}\nexec "$@"\n')
+            script.chmod(0o755)
+            prefix = f' launch-prefix="{script}"'
         file.write_text(f"""<launch><arg name="out"/><arg name="exit_status_file"/><group ns="train">{"".join(nodes)}
-          <node pkg="ltd_master" type="ltd_master" name="master" required="true" output="screen">
+          <node pkg="ltd_master" type="ltd_master" name="master" required="true" output="screen"{prefix}>
             <param name="out" value="$(arg out)"/><param name="exit_status_file" value="$(arg exit_status_file)"/>{text}
           </node></group></launch>""")
         return Launch(self.master, self.folder, (str(file),))
@@ -242,6 +249,101 @@ class Short(Matrix):
         interrupted = launch.interrupt()
         self.named(launch, r"interrupted at \d\.\d+ s of 2 s", interrupted, "stopped, exit code 130")
         self.assertGreater(self.assert_stopped(launch, 130), 50)  # 0.5 s
+
+
+class SideChannels(Matrix):
+    """What the master says cannot be written: neither the run nor its results mind."""
+
+    def is_the_same_behind(self, redirections):
+        self.assert_same(self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), behind=redirections))
+        self.note("-", "messages are lost, same bits")
+
+    @cell("stdout and stderr full", "from the start")
+    def test_full(self):
+        self.is_the_same_behind("exec >/dev/full 2>&1")
+
+    @cell("stdin, stdout and stderr closed", "from the start")
+    def test_closed(self):
+        self.is_the_same_behind("exec <&- >&- 2>&-")
+
+    @cell("stdout and stderr: a pipe whose reader has gone", "from the start")
+    def test_broken_pipe(self):
+        self.is_the_same_behind("exec > >(true) 2>&1\nsleep 0.2")
+
+    @cell("terminal gone, without SIGHUP", "mid-run")
+    def test_terminal_gone(self):
+        terminal, of_launch = os.openpty()
+        log = self.folder / "status"
+        launch = subprocess.Popen(
+            ["roslaunch", "train_brake", "train.launch", f"scenario:={SHORT_TRAIN}", "vehicles:=6", "nodes:=2", PACED,
+             f"set:={self.settings}", f"out:={self.folder}/out", f"exit_status_file:={log}"],
+            env=self.master.environment, stdin=of_launch, stdout=of_launch, stderr=of_launch, start_new_session=True)
+        self.addCleanup(launch.kill)
+        os.close(of_launch)
+        text = b""
+        while b" of 2 s" not in text:
+            text += os.read(terminal, 1000)
+        os.close(terminal)
+        launch.wait(60)
+        self.assertIn(log.read_text(), ("0\n", "130\n"))  # roslaunch, too, may go on or interrupt its nodes
+        self.assertIsNone(json.loads((self.folder / "out/summary.json").read_text())["fault"])
+        self.assert_beginning(messages(self.folder / "out/train.bag"))
+        self.note("-", "goes on to its end, same bits; or interrupted by roslaunch, exit code 130")
+
+    @cell("file-size limit (ulimit -f)", "mid-run")
+    def test_file_size_limit(self):
+        self.settings = LARGE_RECORDS
+        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), behind="ulimit -f 2000",
+                                   checkpoint_interval_s=0.2)
+        since = time.monotonic()
+        seconds = launch.saw(r"results could not be written: cannot write .*ulimit -f", 60)
+        self.note("-", "stopped, exit code 1; the bag holds what fits")
+        self.assertGreater(seconds, since)
+        self.assertEqual(1, launch.ended(), launch.log())
+        self.assert_nothing_left(launch)
+        self.assertGreater(self.assert_beginning(self.read_bag(launch)), 10)
+
+    @unittest.skipUnless(os.geteuid() == 0, "only root can make a small disk")
+    @cell("disk of roslaunch's log full", "mid-run")
+    def test_full_log(self):
+        logs = self.folder / "log"
+        logs.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "train_brake_test", str(logs)], check=True)
+        self.addCleanup(subprocess.run, ["umount", "--lazy", str(logs)], check=True)
+        self.master.environment["ROS_LOG_DIR"] = str(logs)
+        launch = self.launch(PACED)
+        launch.saw(A_QUARTER, SOON)
+        with contextlib.suppress(OSError), open(logs / "filler", "wb", buffering=0) as filler:
+            while True:
+                filler.write(bytes(1 << 12))
+        self.assert_same(launch)
+        self.note("-", "messages are lost, same bits")
+
+    @cell("a second launch of the same train", "mid-run")
+    def test_second_launch(self):
+        self.settings = "duration_s=12"
+        launch = self.launch(PACED)
+        launch.saw(r" 3\.00 of 12 s", SOON)
+        started = time.monotonic()
+        folder = self.folder / "second"
+        folder.mkdir()
+        second = Launch(self.master, folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6", "nodes:=2")
+        seconds = second.saw("/train/master runs already under the ROS master", SOON, started) - started
+        self.assertEqual(2, second.ended(), second.log())
+        self.assertFalse(second.out.exists())
+        self.assert_same(launch)
+        self.note(f"{seconds:.2f}", "refused, its exit code is 2; the first: same bits")
+
+    @cell("roscore restarted", "mid-run")
+    def test_roscore_restarted(self):
+        self.settings = "duration_s=6"
+        launch = self.launch(PACED)
+        launch.saw(r" 1\.50 of 6 s", SOON)
+        self.master.kill()
+        self.master.start()
+        self.assertTrue(wait_until(lambda: "/train/master/pause" in self.master.services(), SOON), launch.log())
+        self.assert_same(launch)
+        self.note("-", "registers again, same bits")
 
 
 LARGE_RECORDS = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # several chunks of a bag
@@ -759,7 +861,8 @@ def short():
     """A suite of about a minute."""
     RandomKills.kills, RandomKills.settings, RandomKills.last_kill_s = 5, "duration_s=8", 4
     load = unittest.defaultTestLoader
-    return unittest.TestSuite([load.loadTestsFromTestCase(Short), FullDisk("test_in_mid_run"), Resumed("test_kill"),
+    return unittest.TestSuite([load.loadTestsFromTestCase(Short), SideChannels("test_full"),
+                               SideChannels("test_file_size_limit"), FullDisk("test_in_mid_run"), Resumed("test_kill"),
                                RandomKills("test_random_kills")])
 
 

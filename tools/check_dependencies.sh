@@ -54,6 +54,7 @@ forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_results|train_run|train_sim|
 }
 forbid '(ros/ros|ros/node_handle|ros/publisher|train_run|train_sim|ltd_master|wagon_node)' \
   'results are written and read without a running graph' train_results
+forbid '(ros|strict_config|train_(brake_msgs|dynamics|node|results|run|sim)|ltd_master|wagon_node)/' 'train_console knows nothing of the rest' train_console
 forbid '(ros/ros|train_sim|ltd_master|wagon_node)' 'a run knows neither its program nor a running graph' train_run
 forbid '(ros/ros|ltd_master|wagon_node)' 'train_sim runs without a graph' train_sim
 forbid '(ros|tf2_ros|rviz|Q[A-Z]|[a-z_]+_msgs/)' 'what is drawn (board/) knows nothing of ROS, messages or windows' \
@@ -62,5 +63,11 @@ forbid '(train_results|train_run|train_sim|ltd_master|wagon_node)/' 'train_brake
   train_brake_rviz
 forbid '(wagon_node|train_sim)/' 'ltd_master and wagon_node meet in train_brake_msgs only' ltd_master
 forbid '(train_results|train_run|train_sim|ltd_master)/' 'ltd_master and wagon_node meet in train_brake_msgs only' wagon_node
+
+# What programs say goes through train_console, so that a message that cannot be written does not end a run.
+if grep -rnE --include='*.h' --include='*.cpp' 'fmt::print\((stderr|")|std::(cerr|cout)\b *<<' . | grep -vE '/(test|bench|fuzz)/|///'; then
+  echo '  rule: messages by train_console::Tell, output by train_console::Print' >&2
+  status=1
+fi
 
 exit $status

@@ -17,6 +17,11 @@ vehicles=$(sed -nE 's/.*: ([0-9]+) vehicle\(s\),.*/\1/p' <<<"$vehicles")
 status=$(mktemp)
 trap 'rm -f "$status"' EXIT
 trap : INT TERM  # Ctrl-C reaches roslaunch, too: wait for it, then report
+trap '' PIPE
+# roslaunch ends where its output cannot be written. A terminal gets it as it comes; what else reads it may go away.
+shield() { (trap '' INT TERM; cat || cat >/dev/null) 2>/dev/null; }
+[ -t 1 ] || exec > >(shield)
+[ -t 2 ] || exec 2> >(shield >&2)
 roslaunch train_brake train.launch scenario:="$scenario" vehicles:="$vehicles" out:="$out" \
   exit_status_file:="$status" "$@" &
 launch=$!

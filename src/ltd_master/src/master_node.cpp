@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <random>
@@ -13,6 +12,7 @@
 #include <stdexcept>
 
 #include "ltd_master/settings.h"
+#include "train_console/console.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
 #include "train_node/caller.h"
@@ -247,8 +247,8 @@ int MasterNode::Run() {
   if (exit_code == train_run::kFailure) fault = "the results could not be written: " + run.write_error();
   PublishDiagnostics(master, exit_code == train_run::kSuccess ? "complete" : "ended early");
   ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
-  fmt::print("{}", json);
-  std::fflush(stdout);
+  train_console::Print("{}", json);
+  train_console::FinishOutput();  // for people: the result is summary.json
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
   } else if (!fault.empty()) {

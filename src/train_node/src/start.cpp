@@ -8,11 +8,13 @@
 #include <thread>
 #include <vector>
 
+#include "train_console/console.h"
 #include "train_node/occupant.h"
 
 namespace train_node {
 
 void InitWithWallTime(int argc, char** argv, const std::string& name, std::uint32_t options) {
+  train_console::PrepareProcess();
   std::vector<char*> arguments(argv, argv + argc);
   static char wall_time[] =
       "/use_sim_time:=/nodes_of_the_train_use_wall_time";  // a parameter that nobody sets

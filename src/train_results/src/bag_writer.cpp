@@ -148,6 +148,7 @@ void BagWriter::GoOn() {
 
 Bytes BagWriter::Checkpoint() {
   WriteChunk();
+  if (fdatasync(descriptor_) != 0) Fail();
   kept_chunks_ = chunks_.size();
   ByteWriter writer;
   writer.Add(size_);
@@ -277,7 +278,9 @@ void BagWriter::WriteFileHeader(std::uint64_t index_position, std::size_t connec
 }
 
 void BagWriter::Fail() const {
-  throw std::system_error(errno, std::generic_category(), "cannot write " + file_);
+  const std::error_code error(errno, std::generic_category());
+  const char* hint = error == std::errc::file_too_large ? " (ulimit -f limits the size of files)" : "";
+  throw std::system_error(error, "cannot write " + file_ + hint);
 }
 
 void BagWriter::Write(const Bytes& bytes, std::uint64_t position) {
@@ -317,7 +320,7 @@ void BagWriter::Close() {
   descriptor_ = -1;
   if (complete) std::filesystem::rename(file_ + ".active", file_);
   if (error != nullptr) std::rethrow_exception(error);
-  if (!complete) throw std::system_error(errno, std::generic_category(), "cannot write " + file_);
+  if (!complete) Fail();
 }
 
 }  // namespace train_results

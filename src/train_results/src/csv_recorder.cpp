@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <numeric>
 #include <stdexcept>
 
@@ -27,12 +28,13 @@ std::string WagonTable(int vehicle, int vehicles) {
 
 std::ofstream Open(const std::filesystem::path& file) {
   std::ofstream stream(file);
-  if (!stream) throw std::runtime_error("cannot write " + file.string());
+  if (!stream) throw std::runtime_error("cannot write " + file.string() + ": " + WriteFailure(errno));
   return stream;
 }
 
 void Check(const std::ofstream& stream, const std::filesystem::path& file) {
-  if (!stream) throw std::runtime_error("could not write all of " + file.string() + ": is the disk full?");
+  if (!stream)
+    throw std::runtime_error("could not write all of " + file.string() + ": " + WriteFailure(errno));
 }
 
 template <class Values>
@@ -124,6 +126,7 @@ Bytes CsvRecorder::Checkpoint() {
   const auto add = [&](std::ofstream& stream, const std::string& name) {
     stream.flush();
     Check(stream, folder_ / name);
+    SyncFile(folder_ / name);
     train_dynamics::StreamDigest& digest = digests_[name];
     AddToDigest(folder_ / name, digest.size(), static_cast<std::uint64_t>(stream.tellp()), digest);
     writer.Add(digest.size());
@@ -229,7 +232,7 @@ void CsvRecorder::CheckAll() const {
   Check(history_, folder_ / kHistory);
   Check(pressures_, folder_ / kPressures);
   for (const auto& [name, stream] : brake_) Check(stream, folder_ / name);
-  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / "wagon_*.csv");
+  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / WagonTable(vehicle, vehicles_));
 }
 
 void WriteCouplerTable(const std::filesystem::path& folder, const train_dynamics::TrainMaster& master) {

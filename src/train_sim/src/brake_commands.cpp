@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "train_console/console.h"
 #include "train_dynamics/brake/pneumatic/air_test.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/braked_weight.h"
@@ -86,31 +87,32 @@ ScenarioParams Alone(ScenarioParams params) {
 int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides) {
   const LoadedScenario loaded = LoadWithPneumaticBrake(scenario_file, overrides);
   const std::vector<double> length_m = Lengths(loaded.consist);
-  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : loaded.warnings) train_console::Tell("warning: {}\n", warning);
   const auto results = train_dynamics::TestAirBrake(loaded.params.brake->pneumatic, length_m);
-  fmt::print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n", loaded.params.brake->name,
-             length_m.size(), "test", "value", "", "rule", "");
+  train_console::Print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n",
+                       loaded.params.brake->name, length_m.size(), "test", "value", "", "rule", "");
   int failed = 0;
   for (const train_dynamics::AirTestResult& r : results) {
-    fmt::print("{:<52} {:>9} {:<8} {:<46} {}\n", r.test,
-               std::isnan(r.value) ? "never" : fmt::format("{:.4g}", r.value), r.unit, r.rule,
-               r.passed ? "passed" : "FAILED");
+    train_console::Print("{:<52} {:>9} {:<8} {:<46} {}\n", r.test,
+                         std::isnan(r.value) ? "never" : fmt::format("{:.4g}", r.value), r.unit, r.rule,
+                         r.passed ? "passed" : "FAILED");
     failed += !r.passed;
   }
-  fmt::print("\n{} of {} passed\n", results.size() - failed, results.size());
+  train_console::Print("\n{} of {} passed\n", results.size() - failed, results.size());
   return failed == 0 ? train_run::kSuccess : train_run::kFailure;
 }
 
 int PrintBrakeWeight(const std::string& scenario_file, const std::vector<std::string>& overrides) {
   const LoadedScenario loaded = LoadWithPneumaticBrake(scenario_file, overrides);
   const ScenarioParams alone = Alone(loaded.params);
-  fmt::print("{}\n\nalone: {}, {:.1f} t\n", loaded.params.name, alone.train.consist[0].vehicle.name,
-             1e-3 * alone.train.consist[0].vehicle.TotalMass());
+  train_console::Print("{}\n\nalone: {}, {:.1f} t\n", loaded.params.name, alone.train.consist[0].vehicle.name,
+                       1e-3 * alone.train.consist[0].vehicle.TotalMass());
   double lambda = 0.0;
   for (const double speed_kmh : {120.0, 100.0}) {
     const double stop_m = StoppingDistance(alone, speed_kmh);
     lambda = train_dynamics::BrakedWeightPercentage(speed_kmh, stop_m);
-    fmt::print("  from {:g} km/h: {:.1f} m, braked weight {:.1f} % (UIC 544-1)\n", speed_kmh, stop_m, lambda);
+    train_console::Print("  from {:g} km/h: {:.1f} m, braked weight {:.1f} % (UIC 544-1)\n", speed_kmh,
+                         stop_m, lambda);
   }
   double train_m = 0.0;
   for (const double length_m : Lengths(loaded.consist)) train_m += length_m;
@@ -124,7 +126,7 @@ int PrintBrakeWeight(const std::string& scenario_file, const std::vector<std::st
       goods ? train_dynamics::BrakingPosition::kGoods : train_dynamics::BrakingPosition::kPassenger);
   const double difference = stop_m / model_m - 1.0;
   const bool agrees = std::abs(difference) <= 0.1;
-  fmt::print(
+  train_console::Print(
       "train: {} vehicles, {:.0f} m, position {}\n  from 100 km/h: {:.1f} m; conversion model of ETCS {:.1f} "
       "m: {:+.1f} %, {}\n",
       loaded.consist.vehicles(), train_m, goods ? "G" : "P", stop_m, model_m, 100.0 * difference,

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/exchange_stability.h"
 #include "train_dynamics/train/thread_team.h"
@@ -27,7 +28,7 @@ constexpr double kMs = 1e3, kMega = 1e-6;
 
 template <class... Values>
 void Line(const char* name, const char* format, const Values&... values) {
-  fmt::print("  {:<10} {}\n", name, fmt::format(fmt::runtime(format), values...));
+  train_console::Print("  {:<10} {}\n", name, fmt::format(fmt::runtime(format), values...));
 }
 
 double FreeMemory() {
@@ -78,7 +79,7 @@ void PrintScenario(const LoadedScenario& scenario) {
         return consist.connection_types[type].kind == train_dynamics::ConnectionKind::kDrawBar;
       });
   const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
-  fmt::print("{}: {}\n", p.name, p.description);
+  train_console::Print("{}: {}\n", p.name, p.description);
   Line("model", "{}", p.ModelNames());
   Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name,
        consist.vehicles(), 1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars,
@@ -196,8 +197,7 @@ int CheckScenario(const CheckOptions& options) {
          traffic.calls_per_s * share, kMega * traffic.bytes_to_nodes_per_s * share,
          kMega * traffic.bytes_from_nodes_per_s * share);
   }
-  std::fflush(stdout);
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) train_console::Tell("warning: {}\n", warning);
   if (!run.fault.empty()) return train_run::kSimulationFault;
   return train_run::kSuccess;
 }

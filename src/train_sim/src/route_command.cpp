@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <fstream>
 #include <set>
 #include <stdexcept>
 
+#include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_run/exit_code.h"
 #include "train_sim/route_drawing.h"
@@ -31,7 +31,7 @@ constexpr double kLargestChange = 0.03;  ///< of the grade at one place
 
 template <class... Values>
 void Line(const char* name, const char* format, const Values&... values) {
-  fmt::print("  {:<10} {}\n", name, fmt::format(fmt::runtime(format), values...));
+  train_console::Print("  {:<10} {}\n", name, fmt::format(fmt::runtime(format), values...));
 }
 
 /// One stretch of a staircase within the drawn extent.
@@ -171,7 +171,7 @@ std::string Table(const TrackParams& route, const Stretch& extent) {
 int ShowRoute(const RouteOptions& options) {
   const TrackParams route = train_dynamics::config::LoadTrack(options.file, options.overrides);
   const Stretch extent = DrawnExtent(route);
-  fmt::print("{}\n", route.name.empty() ? options.file : route.name);
+  train_console::Print("{}\n", route.name.empty() ? options.file : route.name);
   Line("extent", "{} to {}, {:.3f} km{}", Km(extent.from_m), Km(extent.to_m),
        kKmPerM * (extent.to_m - extent.from_m),
        std::isinf(route.Extent().to_m) ? " (of its entries; the route has no end)" : "");
@@ -194,8 +194,8 @@ int ShowRoute(const RouteOptions& options) {
   const std::vector<std::string> warnings = WarningsAbout(route, extent);
   std::fflush(stdout);
   for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
-    fmt::print(stderr, "warning: {}\n", warnings[i]);
-  if (warnings.size() > kShown) fmt::print(stderr, "and {} warnings more\n", warnings.size() - kShown);
+    train_console::Tell("warning: {}\n", warnings[i]);
+  if (warnings.size() > kShown) train_console::Tell("and {} warnings more\n", warnings.size() - kShown);
   if (!options.plot.empty()) WriteFile(options.plot, DrawRoute(route));
   if (!options.csv.empty()) WriteFile(options.csv, Table(route, extent));
   return train_run::kSuccess;

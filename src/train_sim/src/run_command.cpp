@@ -1,7 +1,5 @@
 #include "train_sim/run_command.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/thread_team.h"
@@ -25,7 +24,7 @@ using train_dynamics::TrainRecord;
 using train_dynamics::config::LoadedScenario;
 
 void Print(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) train_console::Tell("warning: {}\n", warning);
 }
 
 std::vector<std::string> Overrides(const RunOptions& options) {
@@ -70,11 +69,11 @@ void WarnOfResidual(const train_run::TrainRun& run) {
   constexpr double kAim = 1e-6;
   const double share = run.summary().ResidualShare(run.master());
   if (std::abs(share) <= kAim) return;
-  fmt::print(stderr,
-             "warning: the energy ledger's residual is {:.2g} of the energy turned over, above {:.0e}: halve "
-             "dt_s and "
-             "exchange_interval_s and see what of the result stays\n",
-             share, kAim);
+  train_console::Tell(
+      "warning: the energy ledger's residual is {:.2g} of the energy turned over, above {:.0e}: halve "
+      "dt_s and "
+      "exchange_interval_s and see what of the result stays\n",
+      share, kAim);
 }
 
 /// From time 0, or from a checkpoint, to the end.
@@ -96,19 +95,20 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   }
   WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
-  fmt::print("{}", json);
-  if (!run.Warning().empty()) fmt::print(stderr, "warning: {}\n", run.Warning());
+  train_console::Print("{}", json);
+  if (!run.Warning().empty()) train_console::Tell("warning: {}\n", run.Warning());
   const double end_s = run.master().time_s();
   switch (run.exit_code()) {
     case train_run::kFailure:
-      fmt::print(stderr, "train_sim: the results could not be written at {:.3f} s: {} (is the disk full?)\n",
-                 end_s, run.write_error());
+      train_console::Tell("train_sim: the results could not be written at {:.3f} s: {}\n", end_s,
+                          run.write_error());
       break;
     case train_run::kSimulationFault:
-      fmt::print(stderr, "train_sim: the simulation broke down: {}\n", run.fault());
+      train_console::Tell("train_sim: the simulation broke down: {}\n", run.fault());
       break;
     case train_run::kInterrupted:
-      fmt::print(stderr, "train_sim: interrupted at {:.3f} s of {:g} s\n", end_s, scenario.params.duration_s);
+      train_console::Tell("train_sim: interrupted at {:.3f} s of {:g} s\n", end_s,
+                          scenario.params.duration_s);
       break;
     default:
       break;
@@ -126,7 +126,7 @@ int RunScenario(const RunOptions& options) {
       options.csv,
       options.checkpoint_interval_s,
       options.go_on_without_records ? train_results::OnWriteError::kGoOn : train_results::OnWriteError::kStop,
-      [](const std::string& what) { fmt::print(stderr, "\ntrain_sim: {}\n", what); }};
+      [](const std::string& what) { train_console::Tell("\ntrain_sim: {}\n", what); }};
   if (options.resume.empty()) {
     const LoadedScenario scenario = Load(options);
     train_results::RunOutput output(output_options, scenario.files, scenario.params);

@@ -1,12 +1,12 @@
-#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 #include "strict_config/error_list.h"
+#include "train_console/console.h"
 #include "train_sim/brake_commands.h"
 #include "train_sim/check_command.h"
 #include "train_sim/route_command.h"
@@ -167,18 +167,21 @@ int Main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  train_console::PrepareProcess();
   try {
     const int exit_code = Main(argc, argv);
-    if (std::fflush(stdout) != 0) throw std::runtime_error("the output could not be written");
-    return exit_code;
+    const std::string error = train_console::FinishOutput();
+    if (error.empty()) return exit_code;
+    train_console::Tell("train_sim: the output could not be written: {}\n", error);
+    return exit_code == train_run::kSuccess ? train_run::kFailure : exit_code;
   } catch (const strict_config::Error& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    train_console::Tell("{}\n", e.what());
     return train_run::kBadInput;
   } catch (const std::invalid_argument& e) {
-    fmt::print(stderr, "train_sim: {}\n", e.what());
+    train_console::Tell("train_sim: {}\n", e.what());
     return train_run::kBadInput;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "train_sim: {}\n", e.what());
+    train_console::Tell("train_sim: {}\n", e.what());
     return train_run::kFailure;
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
 #include "train_sim/run_command.h"
@@ -37,35 +38,36 @@ std::string LargestMotions(const WagonMode<kPerBogie>& mode) {
 /// The whole shapes: largest component 1, metres and radians alike.
 template <int kPerBogie>
 void PrintShapes(const WagonModes<kPerBogie>& analysis) {
-  fmt::print("mode,frequency_hz,damping_ratio");
+  train_console::Print("mode,frequency_hz,damping_ratio");
   for (int b = 0; b < train_dynamics::kBodiesOf<kPerBogie>; ++b) {
     std::string name = train_dynamics::kBodyNames[b];
     std::replace(name.begin(), name.end(), ' ', '_');
-    fmt::print(",{0}_x,{0}_z,{0}_pitch", name);
+    train_console::Print(",{0}_x,{0}_z,{0}_pitch", name);
   }
   int number = 1;
   for (const WagonMode<kPerBogie>& mode : analysis.modes) {
-    fmt::print("\n{},{:.6g},{:.6g}", number++, mode.frequency_hz, mode.damping_ratio);
+    train_console::Print("\n{},{:.6g},{:.6g}", number++, mode.frequency_hz, mode.damping_ratio);
     for (int b = 0; b < train_dynamics::kBodiesOf<kPerBogie>; ++b) {
-      fmt::print(",{:.4g},{:.4g},{:.4g}", mode.shape.x[b], mode.shape.z[b], mode.shape.pitch[b]);
+      train_console::Print(",{:.4g},{:.4g},{:.4g}", mode.shape.x[b], mode.shape.z[b], mode.shape.pitch[b]);
     }
   }
-  fmt::print("\n");
+  train_console::Print("\n");
 }
 
 template <int kPerBogie>
 void PrintTable(const train_dynamics::BogieVehicle<kPerBogie>& wagon, const WagonModes<kPerBogie>& analysis) {
-  fmt::print("{}: {:.1f} kg, linearised about its static equilibrium, wedges without friction\n\n",
-             wagon.params.name, wagon.params.TotalMass());
-  fmt::print("{:>5} {:>12} {:>9}   {}\n", "mode", "frequency_hz", "damping",
-             "largest shares of the kinetic energy");
+  train_console::Print("{}: {:.1f} kg, linearised about its static equilibrium, wedges without friction\n\n",
+                       wagon.params.name, wagon.params.TotalMass());
+  train_console::Print("{:>5} {:>12} {:>9}   {}\n", "mode", "frequency_hz", "damping",
+                       "largest shares of the kinetic energy");
   int number = 1;
   for (const WagonMode<kPerBogie>& mode : analysis.modes) {
-    fmt::print("{:>5} {:>12.3f} {:>8.2f}%   {}\n", number++, mode.frequency_hz, 100.0 * mode.damping_ratio,
-               LargestMotions(mode));
+    train_console::Print("{:>5} {:>12.3f} {:>8.2f}%   {}\n", number++, mode.frequency_hz,
+                         100.0 * mode.damping_ratio, LargestMotions(mode));
   }
-  fmt::print("\nrigid-body motions: {} (travel, rotation of the wheelsets)\n", analysis.rigid_body_modes);
-  fmt::print("largest stable explicit step: {:.3f} ms\n", 1e3 * analysis.largest_stable_step_s);
+  train_console::Print("\nrigid-body motions: {} (travel, rotation of the wheelsets)\n",
+                       analysis.rigid_body_modes);
+  train_console::Print("largest stable explicit step: {:.3f} ms\n", 1e3 * analysis.largest_stable_step_s);
 }
 
 }  // namespace
@@ -87,27 +89,27 @@ int PrintAdhesion(const std::string& vehicle_file, const std::vector<std::string
   const double load_n = vehicle.Weight() / vehicle.Wheelsets();
   const std::vector<double> speeds_kmh = {5, 20, 40, 80, 120};
   if (!csv) {
-    fmt::print("{}: coefficient of adhesion at {:.1f} kN per wheelset, mu0 {:g}\n\n", vehicle.name,
-               1e-3 * load_n, contact.adhesion.friction_coefficient);
+    train_console::Print("{}: coefficient of adhesion at {:.1f} kN per wheelset, mu0 {:g}\n\n", vehicle.name,
+                         1e-3 * load_n, contact.adhesion.friction_coefficient);
   }
-  fmt::print(csv ? "creepage" : "{:>9}", "creepage");
+  train_console::Print(csv ? "creepage" : "{:>9}", "creepage");
   for (double speed : speeds_kmh)
-    fmt::print(fmt::runtime(csv ? ",adhesion_at_{:g}_kmh" : " {:>5g} km/h"), speed);
-  fmt::print("\n");
+    train_console::Print(fmt::runtime(csv ? ",adhesion_at_{:g}_kmh" : " {:>5g} km/h"), speed);
+  train_console::Print("\n");
   constexpr int kPoints = 41;
   for (int i = 0; i < kPoints; ++i) {
     const double creepage =
         i == 0 ? 0.0 : std::pow(10.0, -4.0 + 4.0 * (i - 1) / (kPoints - 2));  // 0.01 % ... 100 %
-    fmt::print(fmt::runtime(csv ? "{:.6g}" : "{:>9.5f}"), creepage);
+    train_console::Print(fmt::runtime(csv ? "{:.6g}" : "{:>9.5f}"), creepage);
     for (double speed : speeds_kmh) {
       const double v = speed / 3.6;
       const auto law = train_dynamics::FreezeCreepLaw(contact.adhesion, creep_stiffness, load_n,
                                                       contact.adhesion.friction_coefficient, v,
                                                       contact.creepage_regularisation_speed_mps);
       const double adhesion = train_dynamics::PolachForce(law, creepage * v).force / load_n;
-      fmt::print(fmt::runtime(csv ? ",{:.6g}" : " {:>10.5f}"), adhesion);
+      train_console::Print(fmt::runtime(csv ? ",{:.6g}" : " {:>10.5f}"), adhesion);
     }
-    fmt::print("\n");
+    train_console::Print("\n");
   }
   return train_run::kSuccess;
 }

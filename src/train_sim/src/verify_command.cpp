@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/run_summary.h"
@@ -277,19 +278,20 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   progress.Finish();
 
   if (comparison.Differs()) {
-    fmt::print("{}", comparison.Verdict());
+    train_console::Print("{}", comparison.Verdict());
     return train_run::kDifferent;
   }
   if (!run.fault().empty()) {
-    fmt::print("different: the repetition breaks down, where the bag goes on: {}\n", run.fault());
+    train_console::Print("different: the repetition breaks down, where the bag goes on: {}\n", run.fault());
     return train_run::kDifferent;
   }
   if (!comparison.Finished()) {
     if (train_run::Interrupt() == 0) {
-      fmt::print("different: the bag goes on after the end at {:g} s\n", params.duration_s);
+      train_console::Print("different: the bag goes on after the end at {:g} s\n", params.duration_s);
       return train_run::kDifferent;
     }
-    fmt::print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
+    train_console::Print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(),
+                         params.duration_s);
     return train_run::kInterrupted;
   }
   const long end =
@@ -298,25 +300,27 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const char* const covered =
       comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
   if (!master.Done()) {
-    fmt::print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n", master.time_s(),
-               params.duration_s, comparison.records());
+    train_console::Print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n",
+                         master.time_s(), params.duration_s, comparison.records());
     return train_run::kIncomplete;
   }
   const std::string digest = fmt::format("{:016x}", master.state_digest());
   if (summarised && *summarised != digest) {
-    fmt::print("different: the records are the same, but summary.json has the digest {}, now it is {}\n",
-               Presentable(*summarised), digest);
+    train_console::Print(
+        "different: the records are the same, but summary.json has the digest {}, now it is {}\n",
+        Presentable(*summarised), digest);
     return train_run::kDifferent;
   }
   const std::string begin =
       branch ? fmt::format("from {:g} s, where it left another run, ", run.start_s()) : "";
-  fmt::print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
-             scenario.consist.vehicles(), begin, master.time_s(), digest, covered, comparison.Missing());
+  train_console::Print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}",
+                       comparison.records(), all, scenario.consist.vehicles(), begin, master.time_s(), digest,
+                       covered, comparison.Missing());
   return train_run::kSuccess;
 }
 
 int Unreadable(const std::string& recording, const std::string& why) {
-  fmt::print(stderr, "train_sim: {} cannot be verified: {}\n", recording, Presentable(why));
+  train_console::Tell("train_sim: {} cannot be verified: {}\n", recording, Presentable(why));
   return train_run::kUnreadable;
 }
 

@@ -266,7 +266,7 @@ class ResumeTest(unittest.TestCase):
             resource.setrlimit(resource.RLIMIT_FSIZE, (1000000, 1000000))
         done = train_sim(*RUN, "--out", self.out, "--go-on-without-records", preexec_fn=small_files)
         self.assertEqual(1, done.returncode)
-        self.assertIn("train.bag: File too large: the run goes on without records", done.stderr)
+        self.assertIn("train.bag (ulimit -f limits the size of files): File too large: the run goes on without records", done.stderr)
         self.assertIn("could not be written", done.stderr.splitlines()[-1])
         summary = json.loads(done.stdout)
         self.assertTrue(summary["complete"])

@@ -304,9 +304,77 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual("mine", (self.out / "wagon_measured.csv").read_text())
 
     def test_lost_output_is_an_error(self):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run([TRAIN_SIM, "run", DIP, *SHORT], stdout=full, stderr=subprocess.PIPE, text=True)
+        """Of every command that prints a result; what a run has written is kept."""
+        wagon = str(CONFIG / "vehicles" / "ore_wagon.yaml")
+        self.run_ok(DIP, "--out", str(self.out) + "2", *SHORT)
+        for arguments in (["run", DIP, "--out", str(self.out), *SHORT], ["check", DIP, *SHORT], ["verify", str(self.out) + "2"],
+                          ["modes", wagon], ["adhesion", wagon], ["--help"], ["--version"]):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([TRAIN_SIM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(1, done.returncode, (arguments, done.stderr))
+            self.assertIn("the output could not be written: ", done.stderr)
+        self.assertTrue(json.loads((self.out / "summary.json").read_text())["complete"])
+
+    def test_messages_that_cannot_be_written_do_not_end_a_run(self):
+        """The standard error full, closed, a pipe that nobody reads; all three streams closed."""
+        digest = self.run_ok(DIP, *SHORT)["state_digest"]
+        tables = None
+        for i, (redirection, code) in enumerate((("2>/dev/full", 0), ("2>&-", 0), ("2> >(true)", 0), ("<&- >&- 2>&-", 0),
+                                                 ("2>&1 | head -n 1", 1))):  # there the summary is lost, too
+            out = pathlib.Path(f"{self.out}{i}")
+            command = [TRAIN_SIM, "run", DIP, *SHORT, "--csv", "--out", str(out)]
+            script = '"$@" ' + redirection + '; exit "${PIPESTATUS[0]}"'
+            if code == 1:  # the reader has gone before the first line comes
+                script = '(sleep 1; "$@") 2>&1 | true; exit "${PIPESTATUS[0]}"'
+            done = subprocess.run(["bash", "-c", script, "bash", *command], stdout=subprocess.PIPE, timeout=120)
+            self.assertEqual(code, done.returncode, redirection)
+            summary = json.loads((out / "summary.json").read_text())
+            self.assertEqual((True, digest), (summary["complete"], summary["state_digest"]), redirection)
+            self.assertTrue((out / "checkpoint").exists(), redirection)
+            found = {file.name: file.read_text() for file in out.glob("*.csv")}  # no message in one of them
+            tables = tables or found
+            self.assertEqual(tables, found, redirection)
+
+    def test_errors_that_cannot_be_written_do_not_change_the_exit_code(self):
+        for redirection in ("2>/dev/full", "2>&-", "<&- >&- 2>&-"):
+            command = f'"$@" {redirection}'
+            for arguments, code in ((["run", "missing.yaml"], 2), (["fly"], 2), (["verify", "missing"], 6)):
+                done = subprocess.run(["bash", "-c", command, "bash", TRAIN_SIM, *arguments], stdout=subprocess.DEVNULL)
+                self.assertEqual(code, done.returncode, (redirection, arguments))
+
+    def test_a_terminal_that_goes_away(self):
+        """Without SIGHUP, as behind setsid or after the death of a terminal's multiplexer: the run goes on."""
+        terminal, of_run = os.openpty()
+        process = subprocess.Popen([TRAIN_SIM, "run", EMERGENCY, "--model", "ltd", "--out", str(self.out), "--set", "duration_s=60"],
+                                   stdin=of_run, stdout=subprocess.DEVNULL, stderr=of_run, start_new_session=True)
+        os.close(of_run)
+        os.read(terminal, 10)  # its progress
+        os.close(terminal)
+        self.assertEqual(0, process.wait(120))
+        self.assertTrue(json.loads((self.out / "summary.json").read_text())["complete"])
+
+    def test_a_limit_of_file_sizes(self):
+        """`ulimit -f`: the run ends and says so; what fits is kept."""
+        done = subprocess.run(["bash", "-c", 'ulimit -f 2000; "$@"', "bash", TRAIN_SIM, "run", EMERGENCY, "--model", "ltd", "--out",
+                               str(self.out), "--set", "duration_s=20", "--checkpoint-interval", "1"], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
         self.assertEqual(1, done.returncode, done.stderr)
+        self.assertIn("train.bag (ulimit -f limits the size of files): File too large", done.stderr)
+        summary = json.loads(done.stdout)
+        self.assertFalse(summary["complete"])
+        self.assertEqual(summary, json.loads((self.out / "summary.json").read_text()))
+        with rosbag.Bag(str(self.out / "train.bag")) as bag:
+            self.assertGreater(bag.get_message_count("/train/state"), 0)
+
+    def test_a_folder_that_is_removed_is_not_a_full_disk(self):
+        process = self.start_endless()
+        time.sleep(0.5)
+        shutil.rmtree(self.out)
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
+        self.assertEqual(1, process.returncode, stderr)
+        self.assertIn("No such file or directory", stderr)
+        self.assertNotIn("disk", stderr)
 
     @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
     def test_a_full_disk_ends_the_run_with_what_fits(self):
@@ -330,12 +398,11 @@ class TrainSimTest(unittest.TestCase):
     def test_a_full_disk_for_tables_ends_the_run(self):
         """Only the tables fail here: files of 40 kB are enough for the configuration, not for pressures.csv."""
         def small_files():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000))
         done = subprocess.run([TRAIN_SIM, "run", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=small_files)
         self.assertEqual(1, done.returncode, done.stderr)
-        self.assertIn("could not write all of", done.stderr)
+        self.assertRegex(done.stderr, r"could not write all of .*/wagon_001.csv: File too large \(ulimit -f")
         self.assertFalse(json.loads(done.stdout)["complete"])
 
     def test_a_standing_ltd_wagon_has_no_brake_force(self):

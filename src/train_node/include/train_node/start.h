@@ -7,7 +7,7 @@
 
 namespace train_node {
 
-/// ros::init for a node that keeps wall time itself: it neither follows /clock nor logs with another train's time, or
+/// Prepares the process (train_console::PrepareProcess), then ros::init for a node that keeps wall time itself: it neither follows /clock nor logs with another train's time, or
 /// with time 0. Simulated time travels in messages.
 void InitWithWallTime(int argc, char** argv, const std::string& name, std::uint32_t options = 0);
 

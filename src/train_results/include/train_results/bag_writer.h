@@ -55,7 +55,7 @@ class BagWriter {
 
   int topics() const { return static_cast<int>(connections_.size()); }
 
-  /// Writes what has come so far. @return what a writer needs to go on behind it
+  /// Writes what has come so far, and waits until it is on the disk. @return what a writer needs to go on behind it
   train_dynamics::Bytes Checkpoint();
 
   /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit; if not even those of

@@ -20,7 +20,14 @@ std::string ReadPlainFile(const std::filesystem::path& file, std::uint64_t max_b
 void AddToDigest(const std::filesystem::path& file, std::uint64_t from, std::uint64_t to,
                  train_dynamics::StreamDigest& digest);
 
-/// Writes a whole file or nothing. @throws std::runtime_error
+/// Why a file could not be written, in words for users: "No space left on device", ... @param error  errno
+std::string WriteFailure(int error);
+
+/// Waits until what was written to a file is on the disk. @throws std::runtime_error
+void SyncFile(const std::filesystem::path& file);
+
+/// Writes a whole file or nothing; once it returns, the file survives a loss of power.
+/// @throws std::runtime_error that names the file and the reason
 void WriteFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace train_results
