@@ -57,13 +57,13 @@ build: deps ## build everything (Release) into build/ and devel/
 
 .PHONY: run
 run: build ## launch config/scenarios/$(SCENARIO).yaml as a ROS graph, results and report in $(OUT)
-	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
+	@. devel/setup.sh && rosrun train_brake run config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
 	  exchange_interval:=$(EXCHANGE_INTERVAL)
 
 .PHONY: rviz
 rviz: deps-rviz build ## run at REAL_TIME_FACTOR (1; 0 = as fast as possible) and watch it in rviz; ends when rviz is closed
 	@[ -n "$$DISPLAY" ] || { echo "make rviz: there is no display here (DISPLAY is not set)" >&2; exit 1; }
-	@tools/run_train.sh config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
+	@. devel/setup.sh && rosrun train_brake run config/scenarios/$(SCENARIO).yaml $(OUT) model:=$(MODEL) nodes:=$(NODES) \
 	  exchange_interval:=$(EXCHANGE_INTERVAL) rviz:=true start_paused:=true real_time_factor:=$(REAL_TIME_FACTOR) || [ $$? = 130 ]
 
 .PHONY: paper

@@ -29,6 +29,16 @@ class LaunchFiles(unittest.TestCase):
             text = (LAUNCH / (scenario + ".launch")).read_text()
             self.assertIn("config/scenarios/%s.yaml" % scenario, text)
 
+    def test_nothing_optional_is_called_required(self):
+        needed = {"wagon.launch": {"name"}}
+        for file in sorted(LAUNCH.glob("*.launch")):
+            if file.stem == "wagons":  # cannot be listed: its arguments are computed from required ones
+                continue
+            told = subprocess.run(["roslaunch", "--ros-args", str(file)], stdout=subprocess.PIPE, text=True, check=True).stdout
+            required = told.partition("Required Arguments:\n")[2].partition("Optional Arguments:")[0]
+            names = {line.strip().partition(":")[0] for line in required.splitlines()}
+            self.assertEqual(needed.get(file.name, set()), names, file.name)
+
     def test_by_package_name_and_by_path(self):
         by_name = subprocess.run(["roslaunch", "--nodes", "train_brake", "emergency.launch", "nodes:=4"],
                                  stdout=subprocess.PIPE, check=True, text=True).stdout

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Launches beside others, and those who come late: names, clocks, paths and parameters under one ROS master."""
+import json
 import pathlib
 import re
 import shutil
@@ -201,6 +202,73 @@ class SeveralLaunches(unittest.TestCase):
             self.assertEqual("0\n", (caller / "status").read_text())
             (caller / "status").unlink()
         self.assertFalse((caller / "~").exists())
+
+    def run_command(self, *words, folder):
+        done = subprocess.run(["rosrun", "train_brake", "run", *words, "report:=false"], cwd=folder, env=self.master.environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+        return done.returncode, done.stdout
+
+    def test_run_finds_the_vehicles_and_returns_the_run_s_code_without_red_lines(self):
+        caller = self.folder / "caller"
+        caller.mkdir()
+        (caller / "mine.yaml").write_text(f"base: {SHORT_TRAIN}\nduration_s: 0.1\n")
+        code, log = self.run_command("mine.yaml", "runs/one", "nodes:=2", folder=caller)
+        self.assertEqual(0, code, log)
+        self.assertNotIn("\033[31m", log)
+        self.assertNotIn("REQUIRED", log)
+        summary = json.loads((caller / "runs" / "one" / "summary.json").read_text())
+        self.assertIs(True, summary["complete"])
+        self.assertEqual(6, summary["vehicles"])
+        self.assertEqual({}, self.master.processes())  # nothing is left behind
+        branch = self.run_command("runs/two", "resume:=runs/one", "set:=duration_s=0.12", folder=caller)
+        self.assertEqual(0, branch[0], branch[1])
+
+    def test_run_returns_2_for_what_it_cannot_use(self):
+        for words, told in ((["absent.yaml"], "does not exist"), ([], "SCENARIO is missing"),
+                            ([str(SHORT_TRAIN), "out", "nonsense:=1"], "nonsense"),
+                            ([str(SHORT_TRAIN), "out", "more"], "one too many"),
+                            ([str(SHORT_TRAIN), "out", "model:=3d"], "3d")):
+            code, log = self.run_command(*words, folder=self.folder)
+            self.assertEqual(2, code, log)
+            self.assertIn(told, log)
+        code, log = self.run_command(str(SHORT_TRAIN), "nodes:=2", "startup_timeout:=2", "vehicles:=5", folder=self.folder)
+        self.assertEqual(2, code, log)  # the master counts for itself
+
+    def test_own_vehicles_in_python_run_in_a_train(self):
+        config = SHORT_TRAIN.parent.parent / "config"
+        scenario = self.folder / "four.yaml"
+        scenario.write_text(f"base: {SHORT_TRAIN}\nduration_s: 1\ndetail_vehicles: []\ntrain:\n  name: four\n"
+                            f"  connection: {config}/couplers/calibrated.yaml\n  consist:\n"
+                            f"    - {{vehicle: {config}/vehicles/ore_wagon.yaml, count: 2, locomotive: true}}\n"
+                            f"    - {{vehicle: {config}/vehicles/ore_wagon.yaml, count: 2, model: ltd}}\n")
+        digests, mass_kg = [], 160e3
+        for name in ("first", "second"):
+            own = subprocess.Popen(["rosrun", "train_brake", "own_vehicle", "__ns:=/train", "__name:=wagon_003",
+                                    f"_mass_kg:={mass_kg}"], env=self.master.environment)
+            code, log = self.run_command(str(scenario), name, "nodes:=2", "own:=wagon_003", "on_lost_node:=stop",
+                                         "checkpoint_interval:=0", folder=self.folder)
+            own.terminate()
+            own.wait(10)
+            self.assertEqual(0, code, log)
+            out = self.folder / name
+            digests.append(json.loads((out / "summary.json").read_text())["state_digest"])
+        self.assertEqual(*digests)
+        states, ledgers = [], []
+        with rosbag.Bag(str(out / "train.bag")) as bag:
+            for topic, message, _ in bag.read_messages():
+                {"/train/state": states, "/train/energy_ledger": ledgers}.get(topic, []).append(message)
+        self.assertGreater(len(states), 2)
+        # Nothing but the couplers' work and the shoes' heat changes the kinetic energy: the ledger closes.
+        self.assertGreater(len(ledgers), 2)
+        last = ledgers[-1]
+        self.assertLess(abs(last.residual_j), 1e-6 * last.kinetic_j)
+        self.assertGreater(states[-1].shoe_force_n[2], 0)
+        # Way is the integral of speed.
+        for i in (2, 3):
+            way = states[-1].position_m[i] - states[0].position_m[i]
+            trapezoid = sum((b.speed_mps[i] + a.speed_mps[i]) / 2 * (b.header.stamp - a.header.stamp).to_sec()
+                            for a, b in zip(states, states[1:]))
+            self.assertLess(abs(way - trapezoid), 1e-3 * way)
 
     def test_set_carries_blanks_lists_and_maps(self):
         settings = "set:=name=\"two words\" detail_vehicles=[1, 3] duration_s=0.1"

@@ -76,7 +76,7 @@ class Rviz(unittest.TestCase):
         environment.pop("QT_QPA_PLATFORM", None)
         with open(self.log, "w") as log:
             self.launch = subprocess.Popen(
-                [str(WORKSPACE / "tools" / "run_train.sh"), str(SCENARIO), folder.name + "/out", "rviz:=true",
+                ["rosrun", "train_brake", "run", str(SCENARIO), folder.name + "/out", "rviz:=true",
                  "start_paused:=true"], stdout=log, stderr=subprocess.STDOUT, env=environment, start_new_session=True)
         self.addCleanup(self.end)
 

@@ -1,0 +1,141 @@
+"""`rosrun train_brake run`: launches a train as a ROS graph and ends with the run's own exit code, which roslaunch keeps
+to itself."""
+
+import difflib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+USAGE = """usage: rosrun train_brake run SCENARIO [OUT] [ARG:=VALUE ...]
+       rosrun train_brake run [OUT] resume:=FOLDER [ARG:=VALUE ...]
+
+Launches the train of a scenario file as a ROS graph. The number of its vehicles is found in the file. With a folder
+OUT results are written there, and a report on the run, OUT/report.html (report:=false: none). ARG is an argument of train.launch
+(roslaunch --ros-args train_brake train.launch lists them). Relative paths are those of the caller's folder.
+
+Exit codes are those of the train's master (train_sim --help lists them; 4: a wagon node is missing, dead or late).
+Code 1 also stands for a master that was killed or was not started."""
+
+
+def parse(words):
+    """Splits the command line. @return (scenario or None, results folder or "", {argument: value})
+    @raise ValueError: with what is wrong, for the user"""
+    arguments = {}
+    places = []
+    for word in words:
+        name, assigned, value = word.partition(":=")
+        if not assigned:
+            if word.startswith("-"):
+                raise ValueError(f"'{word}' is no option; arguments of the launch are given as name:=value")
+            places.append(word)
+        elif name in arguments:
+            raise ValueError(f"{name} is given twice")
+        else:
+            arguments[name] = value
+    for name in ("scenario", "out"):
+        if name in arguments:
+            raise ValueError(f"{name.upper()} is given without a name: run SCENARIO [OUT] [ARG:=VALUE ...]")
+    scenario = None
+    if not arguments.get("resume"):
+        if not places:
+            raise ValueError("SCENARIO is missing")
+        scenario = places.pop(0)
+    if len(places) > 1:
+        raise ValueError(f"'{places[1]}' is one too many; arguments of the launch are given as name:=value")
+    return scenario, places[0] if places else "", arguments
+
+
+def vehicles_of(scenario):
+    """Checks a scenario file; errors go to the terminal. @return its number of vehicles; None: it cannot be used"""
+    check = subprocess.run(
+        ["rosrun", "train_sim", "train_sim", "check", scenario], stdout=subprocess.PIPE, text=True, check=False
+    )
+    found = re.search(r": (\d+) vehicle\(s\),", check.stdout)
+    return int(found[1]) if check.returncode == 0 and found else None
+
+
+class EndOfMaster:
+    """Learns from roslaunch that the train's master has ended."""
+
+    def __init__(self):
+        self.came = False
+
+    def process_died(self, process_name, exit_code):  # of roslaunch.pmon.ProcessListener
+        del exit_code  # also negative, after a signal; the master's own code is in a file
+        if re.search(r"(^|/)master-\d+$", process_name) and not process_name.startswith("rosmaster"):
+            self.came = True
+
+
+def launch(arguments, watched):
+    """Runs train.launch until the train's master has ended, or everything has. @raise roslaunch.RLException"""
+    import roslaunch
+
+    import roslaunch.arg_dump
+
+    file = roslaunch.rlutil.resolve_launch_arguments(["train_brake", "train.launch"])[0]
+    known = roslaunch.arg_dump.get_args([file])
+    for name in arguments:  # roslaunch itself takes no notice of what it does not know
+        if name not in known:
+            close = difflib.get_close_matches(name, known, 1)
+            raise roslaunch.RLException(f"train.launch has no argument '{name}'" + (f"; meant: {close[0]}?" if close else ""))
+    words = [f"{name}:={value}" for name, value in arguments.items()]
+    uuid = roslaunch.rlutil.get_or_generate_uuid(None, False)
+    roslaunch.configure_logging(uuid)
+    end = EndOfMaster()
+    parent = roslaunch.parent.ROSLaunchParent(uuid, [(file, words)], process_listeners=[end])
+    try:
+        parent.start()
+        while (watched or not end.came) and parent.pm and parent.pm.is_alive():
+            parent.spin_once()
+            time.sleep(0.05)
+    except KeyboardInterrupt:
+        pass  # Ctrl-C has reached roslaunch's monitor, which ends the nodes
+    finally:
+        parent.shutdown()
+
+
+def main(words):
+    if "-h" in words or "--help" in words:
+        print(USAGE)
+        return 0
+    try:
+        scenario, out, arguments = parse(words)
+    except ValueError as error:
+        print(f"run: {error}\n\n{USAGE}", file=sys.stderr)
+        return 2
+
+    wants_report = arguments.pop("report", "true").lower() not in ("false", "0")
+    os.environ["PWD"] = os.getcwd()  # what the launch file takes relative paths from
+    checked = scenario or str(pathlib.Path(arguments["resume"]).expanduser() / "config.yaml")
+    if "vehicles" not in arguments:
+        vehicles = vehicles_of(checked)
+        if vehicles is None:
+            return 2
+        arguments["vehicles"] = vehicles
+    if scenario:
+        arguments["scenario"] = os.path.abspath(scenario)
+    if out:
+        out = arguments["out"] = os.path.abspath(out)
+
+    import roslaunch
+
+    with tempfile.TemporaryDirectory() as folder:
+        status = pathlib.Path(arguments.setdefault("exit_status_file", f"{folder}/status"))
+        status.unlink(missing_ok=True)
+        watched = arguments.get("rviz", "false").lower() in ("true", "1")
+        try:
+            launch({**arguments, "end_with_master": "false"}, watched)
+        except (roslaunch.RLException, roslaunch.XmlParseException) as error:
+            print(f"run: {error}", file=sys.stderr)
+            return 2
+        code = int(status.read_text()) if status.exists() else None
+
+    # Code 2: nothing was written. What is in the folder is of an earlier run, if there is anything.
+    if wants_report and out and code not in (None, 2) and os.path.exists(f"{out}/train.bag"):
+        if subprocess.run(["rosrun", "train_brake", "report", out], check=False).returncode:
+            print(f"The report on the run could not be made. The run itself ended with code {code}.", file=sys.stderr)
+    return 1 if code is None else code
