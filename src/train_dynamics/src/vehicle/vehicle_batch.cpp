@@ -274,18 +274,37 @@ void VehicleBatch<Vehicle>::Record(const ReplyPlaces& reply, const RecordPlaces&
   }
 }
 
+namespace {
+
+/// Digests of the states in a pack, field by field over the lanes: their chains of operations do not wait for each
+/// other, and with a fixed number of lanes they stay in registers.
+template <int kLanes>
+std::array<Digest, kMostLanes> DigestsOfPack(const std::byte* pack, const int* field, std::size_t fields) {
+  std::array<Digest, kLanes> of_lane{};
+  for (std::size_t i = 0; i < fields; ++i) {
+    std::array<double, kLanes> values;
+    std::memcpy(values.data(), pack + static_cast<std::size_t>(field[i]) * sizeof values, sizeof values);
+    for (int lane = 0; lane < kLanes; ++lane) of_lane[lane].Add(values[lane]);
+  }
+  std::array<Digest, kMostLanes> all{};
+  std::copy(of_lane.begin(), of_lane.end(), all.begin());
+  return all;
+}
+
+}  // namespace
+
 template <class Vehicle>
 void VehicleBatch<Vehicle>::Digests(std::uint64_t* digest) const {
   const int lanes = kernels_.lanes;
+  const auto of_pack = lanes == 8   ? &DigestsOfPack<8>
+                       : lanes == 4 ? &DigestsOfPack<4>
+                       : lanes == 2 ? &DigestsOfPack<2>
+                                    : &DigestsOfPack<1>;
+  static_assert(kMostLanes == 8, "each number of lanes has its function");
   for (int pack = 0; pack < packs_; ++pack) {
-    // Field by field over the lanes: the lanes' chains of operations do not wait for each other.
-    std::array<Digest, kMostLanes> of_lane{};
     const std::byte* state = &states_[static_cast<std::size_t>(pack) * lanes * sizeof(State)];
-    for (const std::size_t field : Vehicle::kDigestedFields) {
-      std::array<double, kMostLanes> values;
-      std::memcpy(values.data(), state + field * lanes * kDouble, lanes * kDouble);
-      for (int lane = 0; lane < lanes; ++lane) of_lane[lane].Add(values[lane]);
-    }
+    const std::array<Digest, kMostLanes> of_lane =
+        of_pack(state, Vehicle::kDigestedFields.data(), Vehicle::kDigestedFields.size());
     for (int lane = 0; lane < lanes && pack * lanes + lane < size_; ++lane) {
       digest[pack * lanes + lane] = of_lane[lane].value();
     }
