@@ -8,7 +8,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "strict_config/writer.h"
 #include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/exchange_stability.h"
@@ -166,6 +168,46 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
 
 }  // namespace
 
+namespace {
+
+/// What programs ask of a scenario; units stand in the names.
+std::string Json(const LoadedScenario& scenario, const RunPrediction& run,
+                 const std::vector<std::string>& warnings) {
+  const ScenarioParams& p = scenario.params;
+  double mass_kg = 0.0, length_m = 0.0;
+  for (int i = 0; i < scenario.consist.vehicles(); ++i) {
+    mass_kg += scenario.consist.vehicle(i).TotalMass();
+    length_m += scenario.consist.vehicle(i).length_m;
+  }
+  const nlohmann::ordered_json json = {{"version", TRAIN_BRAKE_VERSION},
+                                       {"scenario", p.name},
+                                       {"description", p.description},
+                                       {"model", p.ModelNames()},
+                                       {"train", p.train.name},
+                                       {"vehicles", scenario.consist.vehicles()},
+                                       {"mass_kg", mass_kg},
+                                       {"length_m", length_m},
+                                       {"track", p.track.name},
+                                       {"duration_s", p.duration_s},
+                                       {"dt_s", p.dt_s},
+                                       {"exchange_interval_s", p.exchange_interval_s},
+                                       {"record_interval_s", p.record_interval_s},
+                                       {"memory_bytes", run.memory_bytes},
+                                       {"bag_bytes", run.bag_bytes},
+                                       {"warnings", warnings}};
+  constexpr int kIndent = 2;
+  return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+int ResolveScenario(const std::string& scenario, const std::vector<std::string>& overrides) {
+  const LoadedScenario loaded = train_dynamics::config::LoadScenario(scenario, overrides);
+  for (const std::string& warning : loaded.warnings) train_console::Tell("warning: {}\n", warning);
+  train_console::Print("{}", strict_config::Write(loaded.params));
+  return 0;
+}
+
 int CheckScenario(const CheckOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.model.empty()) overrides.push_back("model=" + options.model);
@@ -176,6 +218,12 @@ int CheckScenario(const CheckOptions& options) {
 
   std::vector<std::string> warnings = scenario.warnings;
   WarnOfRun(options, run, warnings);
+  if (options.json) {
+    if (options.nodes > 0 && params.Uses(VehicleModel::kTwoD))
+      WarnOfNodes(options, scenario.consist.vehicles(), warnings);
+    train_console::Print("{}\n", Json(scenario, run, warnings));
+    return run.fault.empty() ? train_run::kSuccess : train_run::kSimulationFault;
+  }
   PrintScenario(scenario);
   PrintStability(scenario);
   Line("wall time", "about {} s with {} thread(s), {} x real time", TwoDigits(run.wall_s), threads,

@@ -109,7 +109,15 @@ int Main(int argc, char** argv) {
   check->add_option("--machines", planned.machines, "machines like this one that share them")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
+  check->add_flag("--json", planned.json, "print one JSON object for programs");
   check->callback([&] { command = [&] { return train_sim::CheckScenario(planned); }; });
+
+  train_sim::CheckOptions resolved;
+  CLI::App* resolve = app.add_subcommand(
+      "resolve", "print a scenario with its parts, defaults and overrides resolved: YAML that runs again");
+  AddInput(resolve, "SCENARIO", "scenario file", resolved.scenario, resolved.overrides);
+  resolve->callback(
+      [&] { command = [&] { return train_sim::ResolveScenario(resolved.scenario, resolved.overrides); }; });
 
   train_sim::RouteOptions route;
   CLI::App* show_route = app.add_subcommand(

@@ -81,6 +81,35 @@ class TrainSimTest(unittest.TestCase):
         self.assertLess(twin["max_tension_spread_n"], 1.0)  # smooth gears are not chaotic
         self.assertEqual(2, train_sim("run", "--resume", self.out, "--twin").returncode)
 
+    def test_check_tells_programs_what_a_scenario_is(self):
+        odd = self.write("odd.yaml", f"base: {EMERGENCY}\nname: odd\ndescription: 'a train of 7 vehicle(s), \"quoted\"'\n")
+        done = train_sim("check", "--json", odd, "--model", "ltd")
+        self.assertEqual(0, done.returncode, done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual((242, "ltd", 'a train of 7 vehicle(s), "quoted"', 70),
+                         (told["vehicles"], told["model"], told["description"], told["duration_s"]))
+        self.assertAlmostEqual(242 * 13.0, told["length_m"], delta=1000)
+        self.assertGreater(told["bag_bytes"], 1e6)
+        self.assertEqual(2, train_sim("check", "--json", "/nowhere.yaml").returncode)
+
+    def test_a_resolved_scenario_runs_again_to_the_same_bits(self):
+        short = ("--set", "duration_s=2", "--set", "model=ltd")
+        resolved = train_sim("resolve", EMERGENCY, *short)
+        self.assertEqual(0, resolved.returncode, resolved.stderr)
+        again = self.run_ok(self.write("resolved.yaml", resolved.stdout))
+        self.assertEqual(self.run_ok(EMERGENCY, *short)["state_digest"], again["state_digest"])
+
+    def test_a_train_is_driven_by_speed_and_place_and_ends_at_standstill(self):
+        summary = self.run_ok("drive_and_stop", "--out", self.out)
+        self.assertEqual(("until", True), (summary["ended_by"], summary["complete"]))
+        coast, brake = summary["commands"]
+        self.assertEqual(("throttle 0", "apply 80 kPa"), (coast["command"], brake["command"]))
+        self.assertLess(coast["time_s"], brake["time_s"])
+        self.assertTrue(summary["stopped"])
+        self.assertGreater(summary["stop_distance_m"], 3000.0)
+        self.assertLess(summary["simulated_s"], 900.0)
+        self.assertEqual(0, train_sim("verify", self.out).returncode)
+
     def test_bag_holds_every_record(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--set", "duration_s=0.2")
         self.assertFalse((self.out / "train.bag.active").exists())

@@ -1,7 +1,9 @@
 """`rosrun train_brake run`: launches a train as a ROS graph and ends with the run's own exit code, which roslaunch keeps
 to itself."""
 
+import contextlib
 import difflib
+import json
 import os
 import pathlib
 import re
@@ -52,10 +54,9 @@ def parse(words):
 def vehicles_of(scenario):
     """Checks a scenario file; errors go to the terminal. @return its number of vehicles; None: it cannot be used"""
     check = subprocess.run(
-        ["rosrun", "train_sim", "train_sim", "check", scenario], stdout=subprocess.PIPE, text=True, check=False
+        ["rosrun", "train_sim", "train_sim", "check", "--json", scenario], stdout=subprocess.PIPE, text=True, check=False
     )
-    found = re.search(r": (\d+) vehicle\(s\),", check.stdout)
-    return int(found[1]) if check.returncode == 0 and found else None
+    return json.loads(check.stdout)["vehicles"] if check.returncode == 0 else None
 
 
 class EndOfMaster:
@@ -98,7 +99,71 @@ def launch(arguments, watched):
         parent.shutdown()
 
 
+@contextlib.contextmanager
+def outlived_output():
+    """What reads the output may go away, or its disk be full: roslaunch would end with it, and the run. A terminal gets the
+    output as it comes; anything else gets it from a process that goes on reading."""
+    shields = []
+    for descriptor in (1, 2):
+        try:
+            if os.isatty(descriptor):
+                continue
+            os.fstat(descriptor)
+        except OSError:  # closed
+            null = os.open(os.devnull, os.O_WRONLY)
+            if null != descriptor:
+                os.dup2(null, descriptor)
+            continue
+        reader = subprocess.Popen(
+            ["bash", "-c", "trap '' INT TERM PIPE; cat || cat > /dev/null"],
+            stdin=subprocess.PIPE,
+            stdout=descriptor,
+            stderr=subprocess.DEVNULL,
+        )
+        os.dup2(reader.stdin.fileno(), descriptor)
+        reader.stdin.close()
+        shields.append((descriptor, reader))
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        for descriptor, reader in shields:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), descriptor)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                reader.wait(10)
+
+
+def in_short(summary):
+    """What a person wants to know of a run first, as lines."""
+
+    def force(name, what):
+        largest = summary.get(name)
+        if not largest:
+            return []
+        return [f"{what} {abs(largest['value']) / 1e3:.0f} kN in connection {largest['connection']} at {largest['time_s']:.1f} s"]
+
+    what = f"{summary.get('scenario')}: {summary.get('vehicles')} vehicle(s), {summary.get('model')} model, "
+    if summary.get("stopped"):
+        what += f"stands after {summary['stop_time_s']:.1f} s and {summary['stop_distance_m']:.1f} m"
+    else:
+        speed = summary["final_speed_kmh"]["mean"]
+        what += f"ends after {summary['simulated_s']:.1f} s at {speed:.1f} km/h"
+        if summary.get("complete") and summary.get("ended_by") != "until":
+            what += " (duration_s is over: a greater one, or `until: {standing: true}`, lets it come to a stop)"
+    forces = force("max_tension_n", "largest tension") + force("max_compression_n", "largest compression")
+    lines = [what] + (["  " + ", ".join(forces)] if forces else [])
+    if not summary.get("complete"):
+        lines.append("  INCOMPLETE: " + (summary.get("fault") or "the run was stopped"))
+    return lines
+
+
 def main(words):
+    with outlived_output():
+        return run(words)
+
+
+def run(words):
     if "-h" in words or "--help" in words:
         print(USAGE)
         return 0
@@ -138,4 +203,9 @@ def main(words):
     if wants_report and out and code not in (None, 2) and os.path.exists(f"{out}/train.bag"):
         if subprocess.run(["rosrun", "train_brake", "report", out], check=False).returncode:
             print(f"The report on the run could not be made. The run itself ended with code {code}.", file=sys.stderr)
+    if out and code not in (None, 2):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # what cannot be read is told by the report
+            summary = json.loads(pathlib.Path(out, "summary.json").read_text())
+            page = pathlib.Path(out, "report.html")
+            print("\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else [])))
     return 1 if code is None else code

@@ -13,11 +13,16 @@ struct CheckOptions {
   int threads = 0;   ///< as in RunOptions
   int nodes = 0;     ///< wagon nodes; 0: a run in one process
   int machines = 1;  ///< that share them
+  bool json = false;  ///< print one JSON object for programs, and nothing for people
 };
 
 /// Checks a scenario, prints what it is and what a run of it will take; what will not work well is a warning with its
 /// place and a remedy.
 /// @throws strict_config::Error
 int CheckScenario(const CheckOptions& options);
+
+/// Prints a scenario with its parts, defaults and overrides resolved, as YAML that runs again to the same bits.
+/// @throws strict_config::Error
+int ResolveScenario(const std::string& scenario, const std::vector<std::string>& overrides);
 
 }  // namespace train_sim
