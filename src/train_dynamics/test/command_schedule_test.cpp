@@ -114,7 +114,8 @@ TEST(CommandSchedule, ItsMemoryGoesOn) {
   EXPECT_EQ(resumed.Given()[0].command.vehicles, (std::vector<int>{1, -1}));
   for (CommandSchedule* schedule : {&whole, &resumed}) {
     std::vector<GivenCommand> later;
-    for (std::uint64_t i = 1; i < 30; ++i) schedule->Judge({i, static_cast<double>(i), 10.0 * i, 9.0}, later);
+    for (std::uint64_t i = 1; i < 30; ++i)
+      schedule->Judge({i, static_cast<double>(i), 10.0 * static_cast<double>(i), 9.0}, later);
     ASSERT_EQ(later.size(), 2u);
     EXPECT_EQ(later[0].exchange, 2u);
     EXPECT_EQ(later[1].exchange, 10u);

@@ -17,7 +17,6 @@
 namespace train_sim {
 namespace {
 
-using train_dynamics::BrakeCommandKind;
 using train_dynamics::BrakeSystemKind;
 using train_dynamics::Consist;
 using train_dynamics::ScenarioParams;
@@ -44,7 +43,10 @@ double StoppingDistance(ScenarioParams params, double speed_kmh) {
   for (auto& group : params.train.consist) group.model.reset();
   params.detail_vehicles.clear();
   params.track.grades.clear();
-  params.commands = {{0.0, train_dynamics::DriverCommandKind::kEmergency}};
+  train_dynamics::DriverCommand emergency;
+  emergency.time_s = 0.0;
+  emergency.kind = train_dynamics::DriverCommandKind::kEmergency;
+  params.commands = {emergency};
   params.initial_speed_kmh = speed_kmh;
   params.duration_s = 600.0;
   params.dt_s = params.exchange_interval_s = 0.001;

@@ -100,7 +100,7 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(self.run_ok(EMERGENCY, *short)["state_digest"], again["state_digest"])
 
     def test_a_train_is_driven_by_speed_and_place_and_ends_at_standstill(self):
-        summary = self.run_ok("drive_and_stop", "--out", self.out)
+        summary = self.run_ok(CONFIG / "scenarios" / "drive_and_stop.yaml", "--out", self.out)
         self.assertEqual(("until", True), (summary["ended_by"], summary["complete"]))
         coast, brake = summary["commands"]
         self.assertEqual(("throttle 0", "apply 80 kPa"), (coast["command"], brake["command"]))
