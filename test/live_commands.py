@@ -45,9 +45,9 @@ class LiveCommands(unittest.TestCase):
         refused = [self.give(kind="apply", reduction_kpa=5000.0), self.give(kind="brake"),
                    self.give(kind="throttle", notch=3.0), self.give(kind="apply")]
         for reply, words in zip(refused, ("reduction_kpa must be", "kind must be one of apply",
-                                          "no vehicle has traction", "reduction_kpa must be > 0")):
+                                          "a train without a locomotive", "reduction_kpa must be > 0")):
             self.assertIn("success: False", reply)
-            self.assertIn(words, reply.replace("\\\n", "").replace("  ", ""))
+            self.assertIn(words, reply)
         self.assertIn("success: True", self.give(kind="apply", reduction_kpa=round(seed.uniform(45, 60), 3)))
         self.tool("rosservice", "call", "/train/master/resume")
         self.tool("rostopic", "pub", "-1", "/train/driver/command", "train_brake_msgs/DriverCommand",

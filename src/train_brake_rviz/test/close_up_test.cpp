@@ -117,7 +117,8 @@ TEST_F(CloseUpTest, ALockedWheelIsWrittenOut) {
   detail.position = wagon_at_rest_;
   const auto says = [this](const train_dynamics::WagonDetail& of) {
     int locked = 0;
-    for (const auto& text : Draw(&of).texts()) locked += text.words == "LOCKED" ? 1 : 0;
+    const Drawing drawing = Draw(&of);
+    for (const auto& text : drawing.texts()) locked += text.words == "LOCKED" ? 1 : 0;
     return locked;
   };
   detail.output.creepage[2] = 0.99;

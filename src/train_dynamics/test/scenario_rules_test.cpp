@@ -82,7 +82,13 @@ class ScenarioRules : public ::testing::Test {
 TEST_F(ScenarioRules, TheProjectsOwnScenariosKeepAllOfThem) {
   for (const auto& file : fs::directory_iterator(root_ / "scenarios")) {
     EXPECT_EQ(ErrorsOf(file.path().string()), "") << file.path();
-    EXPECT_TRUE(LoadScenario(file.path().string(), {}).warnings.empty()) << file.path();
+    for (const std::string& warning : LoadScenario(file.path().string(), {}).warnings) {
+      // Two truths about real trains that their users shall hear.
+      const bool is_known =
+          warning.find("starting_effort_n asks for 0.43331 of the weight") != std::string::npos ||
+          warning.find("applies the brake again after a release") != std::string::npos;
+      EXPECT_TRUE(is_known) << file.path() << ": " << warning;
+    }
   }
 }
 
@@ -167,7 +173,7 @@ TEST_F(ScenarioRules, IntervalsShowBothNumbers) {
   EXPECT_EQ(
       ErrorsOf(Scenario("emergency"), {"exchange_interval_s=0.0015"}),
       "--set exchange_interval_s=0.0015: exchange_interval_s must be a multiple of dt_s (0.001), got 0.0015\n"
-      "scenarios/emergency.yaml:15: record_interval_s must be a multiple of exchange_interval_s (0.0015), "
+      "scenarios/emergency.yaml:16: record_interval_s must be a multiple of exchange_interval_s (0.0015), "
       "got "
       "0.01");
   EXPECT_EQ(
@@ -502,7 +508,8 @@ TEST_F(ScenarioRules, WarnsOfWhatIsNotUsed) {
             "tracks/dip.yaml:4: the ltd model leaves out track.dips (1 entry)");
   EXPECT_EQ(WarningsOf("single_wagon_stop", {table}),
             "scenarios/single_wagon_stop.yaml:7: brake is not used: the pressures come from pressure_table\n"
-            "scenarios/single_wagon_stop.yaml:9: commands (1 entry) are not used: the pressures come from "
+            "scenarios/single_wagon_stop.yaml:9: commands of the brake (1 entry) are not used: the pressures "
+            "come from "
             "pressure_table");
   Put("scenarios/a.yaml",
       "base: single_wagon_stop\nmodel: ltd-no-inertia\ntrack:\n  base: level\n"

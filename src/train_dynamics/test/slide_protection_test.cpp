@@ -31,7 +31,9 @@ constexpr double kDt = 1e-3;
 // vehicle's speed, no other resistance, 430 (1 - exp(-0.5 t)) kPa, from 80 km/h.
 Stop QuarterWagonStop(const std::optional<SlideProtectionParams>& params, double inertia_kgm2 = 120.0) {
   const AdhesionParams low = LoadPart<AdhesionParams>("adhesion/low.yaml");
-  const ShoeFrictionParams shoe{0.322, 150.0};
+  ShoeFrictionParams shoe;
+  shoe.standstill_friction_coefficient = 0.322;
+  shoe.reference_speed_kmh = 150.0;
   const double mass = 28500.0 / 4.0, r = 0.485, weight = 9.81 * mass;
   const WheelRailParams& contact = OreWagon().wheel_rail;
   const double stiffness = CreepStiffness(HertzEllipse(contact.hertz, r), contact.shear_modulus_pa, 5.70);
@@ -69,7 +71,9 @@ Stop QuarterWagonStop(const std::optional<SlideProtectionParams>& params, double
 // @param as_in_train  with the propulsion resistance of the paper, and the calibrated emergency brake 2 s after the start
 double BestDistance(bool as_in_train = false) {
   const AdhesionParams low = LoadPart<AdhesionParams>("adhesion/low.yaml");
-  const ShoeFrictionParams shoe{0.322, 150.0};
+  ShoeFrictionParams shoe;
+  shoe.standstill_friction_coefficient = 0.322;
+  shoe.reference_speed_kmh = 150.0;
   const double mass = 28500.0 / 4.0, weight = 9.81 * mass, r = 0.485;
   const WheelRailParams& contact = OreWagon().wheel_rail;
   const double stiffness = CreepStiffness(HertzEllipse(contact.hertz, r), contact.shear_modulus_pa, 5.70);

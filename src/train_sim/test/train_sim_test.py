@@ -317,7 +317,7 @@ class TrainSimTest(unittest.TestCase):
     def test_a_second_run_replaces_the_first(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--csv", "--set", "duration_s=0.02")
         self.run_ok(DIP, "--out", self.out, *SHORT)
-        self.assertEqual({"checkpoint", "config.yaml", "summary.json", "track_wear.csv", "train.bag"}, {p.name for p in self.out.iterdir()})
+        self.assertEqual({"checkpoint", "config.yaml", "couplers.csv", "summary.json", "track_wear.csv", "train.bag"}, {p.name for p in self.out.iterdir()})
 
     def test_files_of_the_user_are_left_alone(self):
         self.out.mkdir()
