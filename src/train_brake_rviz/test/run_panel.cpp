@@ -139,7 +139,7 @@ TEST_F(RunPanelTest, PaceIsTheMasters) {
 
 TEST_F(RunPanelTest, QuantityIsTheViews) {
   auto& quantity = Find<QComboBox>("Quantity");
-  ASSERT_EQ(4, quantity.count());
+  ASSERT_EQ(5, quantity.count());
   QTest::keyClick(&quantity, Qt::Key_End);
   EXPECT_TRUE(Comes([this] { return selection_.quantity == "acceleration"; }));
   QTest::keyClick(&quantity, Qt::Key_Home);

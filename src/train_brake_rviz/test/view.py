@@ -111,8 +111,8 @@ class View(unittest.TestCase):
         self.assertEqual(("slip", 6), (self.selection.quantity, self.selection.vehicle))
         self.assertEqual((1, 4, 6), tuple(self.selection.detailed))
         select = rospy.ServiceProxy("/train/view/select", SelectView)
-        for quantity, vehicle, words in (("colour", 0, "quantity must be one of coupler_force, pressure, slip, "
-                                          "acceleration, got colour"),
+        for quantity, vehicle, words in (("colour", 0, "quantity must be one of coupler_force, pressure, "
+                                          "pipe_pressure, slip, acceleration, got colour"),
                                          ("", 7, "vehicle 7 is not in a train of 6 vehicles")):
             reply = select(quantity, vehicle)
             self.assertEqual((False, words), (reply.success, reply.message))

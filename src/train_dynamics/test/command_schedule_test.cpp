@@ -132,10 +132,18 @@ struct Driven {
         master(scenario.params, scenario.consist, vehicles, scenario.pressures) {
     master.AddObserver([this](const TrainRecord& record) { last = record; });
   }
-  static std::vector<std::string> Overrides(std::vector<std::string> more, const std::string& commands) {
-    more.insert(more.end(), {"model=ltd", "duration_s=30", "initial_speed_kmh=20", "train.consist[1].count=4",
-                             "train.consist[3].count=4", "detail_vehicles=[]", "commands=" + commands});
-    return more;
+  static std::vector<std::string> Overrides(const std::vector<std::string>& more,
+                                            const std::string& commands) {
+    std::vector<std::string> overrides = {"model=ltd",
+                                          "brake=single_vehicle",
+                                          "duration_s=30",
+                                          "initial_speed_kmh=20",
+                                          "train.consist[1].count=4",
+                                          "train.consist[3].count=4",
+                                          "detail_vehicles=[]",
+                                          "commands=" + commands};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return overrides;
   }
   void RunUntil(std::uint64_t exchange) {
     while (!master.Done() && master.exchange() < exchange) master.Exchange();
