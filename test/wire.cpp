@@ -39,9 +39,7 @@ enum class Path { kMemory, kTcp };
 std::string PathName(const testing::TestParamInfo<Path>& test) {
   return test.param == Path::kMemory ? "Memory" : "Tcp";
 }
-void Choose(Path path, RosTransportOptions& options) {
-  options.shared_memory = path == Path::kMemory;
-}
+void Choose(Path path, RosTransportOptions& options) { options.shared_memory = path == Path::kMemory; }
 constexpr Path kPaths[] = {Path::kMemory, Path::kTcp};
 
 // Wall times of events that need none: processes start, die and answer; the machine may be busy.

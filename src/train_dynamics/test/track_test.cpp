@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "paper_vehicle.h"
-#include "train_dynamics/numeric/lanes.h"
 #include "strict_config/validate.h"
+#include "train_dynamics/numeric/lanes.h"
 #include "train_dynamics/vehicle/wagon_step.h"
 
 namespace train_dynamics {

@@ -10,9 +10,9 @@ struct CheckOptions {
   std::string model;  ///< empty: the scenario's
   std::string out;    ///< folder for results, for its free space; empty: not asked
   std::vector<std::string> overrides;
-  int threads = 0;   ///< as in RunOptions
-  int nodes = 0;     ///< wagon nodes; 0: a run in one process
-  int machines = 1;  ///< that share them
+  int threads = 0;    ///< as in RunOptions
+  int nodes = 0;      ///< wagon nodes; 0: a run in one process
+  int machines = 1;   ///< that share them
   bool json = false;  ///< print one JSON object for programs, and nothing for people
 };
 
