@@ -152,7 +152,19 @@ class Run:
 
     @property
     def commands(self) -> List[dict]:
-        return (self.config or {}).get("commands") or []
+        """Those with a time, and those that were given on the way: by a condition of the scenario, or live."""
+        timed = [command for command in (self.config or {}).get("commands") or [] if "time_s" in command]
+        for given in (self.summary or {}).get("commands") or []:
+            kind, *value = given["command"].split()
+            command = {"time_s": given["time_s"], "kind": kind}
+            if value:
+                command["reduction_kpa" if kind == "apply" else "notch"] = float(value[0])
+            timed.append(command)
+        return sorted(timed, key=lambda command: command["time_s"])
+
+    @property
+    def brake_commands(self) -> List[dict]:
+        return [command for command in self.commands if command["kind"] in ("apply", "emergency", "release")]
 
 
 def scenario_of(given: pathlib.Path) -> str:

@@ -81,7 +81,10 @@ def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = Fa
     for command in commands:
         axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
         if named:
-            kind = {"emergency": "emergency", "release": "release"}.get(
-                command["kind"], f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa")
+            kind = command["kind"].replace("_", " ")
+            if kind == "apply":
+                kind = f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa"
+            elif "notch" in command:
+                kind += f" {command['notch']:g}"
             axes.annotate(kind, (command["time_s"], y), (4, offset), xycoords=("data", "axes fraction"),
                           textcoords="offset points", va=align, fontsize=9.5, color=MUTED)
