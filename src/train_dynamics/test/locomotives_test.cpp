@@ -295,5 +295,59 @@ TEST(TractionInTwoDimensions, CreepLimitsIt) {
   EXPECT_GT(ride.state.velocity.pitch[kWheelset1] * 0.5334, 3.0 * ride.Speed());  // the wheels spin
 }
 
+TEST(SlipControl, TakesTorqueAtOnceAndGivesItBackSlowly) {
+  const SlipControlParams p;
+  EXPECT_EQ(NextReduction(p, 0.0, 10.0, 10.15), 0.0);                  // within 2 %
+  EXPECT_NEAR(NextReduction(p, 0.0, 10.0, 11.2), 0.3 * 1.0, 1e-12);    // 1 m/s beyond
+  EXPECT_NEAR(NextReduction(p, 0.0, 1.0, 2.1), 0.3 * 1.0, 1e-12);      // beyond 0.1 m/s
+  EXPECT_NEAR(NextReduction(p, 0.5, 10.0, 10.0), 0.5 - 0.001, 1e-12);  // 20 % per second, every 5 ms
+  EXPECT_EQ(NextReduction(p, 0.0, 10.0, 90.0), 1.0);
+  EXPECT_EQ(NextReduction(p, 0.0, 10.0, 3.0), 0.0);  // braked wheels are none of its business
+}
+
+// A 2D locomotive before five vehicles on a greasy rail: its effort is several times what the rail gives.
+struct GreasyStart {
+  explicit GreasyStart(bool with_slip_control)
+      : train({"train.consist[1].count=2", "train.consist[2].count=1", "train.consist[3].count=2",
+               "duration_s=20", "train.consist[0].vehicle.wheel_rail.adhesion=low",
+               std::string("train.consist[0].vehicle.traction.slip_control.gain_per_mps=") +
+                   (with_slip_control ? "0.3" : "1e-9")}) {}
+  PulledTrain train;
+};
+
+TEST(SlipControl, KeepsAGreasyStartFromSpinning) {
+  double speed_mps[2], largest_creepage[2] = {0.0, 0.0};
+  for (const bool with : {false, true}) {
+    GreasyStart start(with);
+    start.train.master.AddObserver([&](const TrainRecord& record) {
+      if (record.time_s > 10.0)
+        largest_creepage[with] = std::max(largest_creepage[with], std::abs(record.vehicles.creepage[0]));
+    });
+    start.train.master.Start();
+    start.train.Command({8, 0});
+    start.train.RunUntil(20.0);
+    speed_mps[with] = start.train.last.vehicles.speed_mps[0];
+    EXPECT_LT(start.train.residual_j, 1e-6 * start.train.turned_over_j + 1e-6 * start.train.initial_j);
+  }
+  EXPECT_GT(largest_creepage[0], 2.0);  // the wheels spin away
+  EXPECT_LT(largest_creepage[1], 1.5);
+  EXPECT_GT(speed_mps[1], speed_mps[0]);  // falling friction: who slips less pulls more
+}
+
+TEST(SlipControl, GoesOnFromACheckpointToTheSameBits) {
+  GreasyStart whole(true);
+  whole.train.master.Start();
+  whole.train.Command({8, 0});
+  whole.train.RunUntil(11.999);
+  whole.train.master.AskForCheckpoint();
+  whole.train.RunUntil(12.0);
+  const TrainCheckpoint checkpoint = DecodeTrainCheckpoint(Encode(whole.train.master.Checkpoint()));
+  whole.train.RunUntil(14.0);
+  GreasyStart resumed(true);
+  resumed.train.master.Resume(checkpoint);
+  resumed.train.RunUntil(14.0);
+  EXPECT_EQ(whole.train.master.state_digest(), resumed.train.master.state_digest());
+}
+
 }  // namespace
 }  // namespace train_dynamics

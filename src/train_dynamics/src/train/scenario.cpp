@@ -325,8 +325,15 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
 
 void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    if (ModelOfGroup(i) != VehicleModel::kTwoD) continue;
+    const std::optional<TractionParams>& traction = train.consist[i].vehicle.traction;
+    if (traction && traction->slip_control && !Multiple(traction->slip_control->sampling_period_s, dt_s)) {
+      broken.push_back({"train.consist" + Index(i) + ".vehicle.traction.slip_control.sampling_period_s",
+                        "must be a multiple of dt_s",
+                        {"train", "dt_s", "model"}});
+    }
     const std::optional<SlideProtectionParams>& protection = train.consist[i].vehicle.wheel_slide_protection;
-    if (!protection || ModelOfGroup(i) != VehicleModel::kTwoD) continue;
+    if (!protection) continue;
     const std::string part = "train.consist" + Index(i) + ".vehicle.wheel_slide_protection.";
     const auto must_be_multiple = [&](const std::string& key, double value) {
       if (value == 0.0 || Multiple(value, dt_s)) return;

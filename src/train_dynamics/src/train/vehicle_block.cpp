@@ -8,6 +8,7 @@
 #include "train_dynamics/numeric/digest.h"
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/batch_protection.h"
+#include "train_dynamics/vehicle/batch_slip_control.h"
 #include "train_dynamics/vehicle/slide_watch.h"
 #include "train_dynamics/vehicle/vehicle_batch.h"
 
@@ -132,6 +133,19 @@ class EqualVehicles : public VehicleBatch<Vehicle> {
   }
 };
 
+/// One step of equal vehicles, the last of an exchange with its output.
+template <class Vehicle>
+bool AdvanceStep(EqualVehicles<Vehicle>& vehicles, const Track& track, const ExchangeRequest& request,
+                 int step, const LoadPlaces& loads, const ReplyPlaces& reply, bool with_output) {
+  const bool shows = with_output && step + 1 == request.steps;
+  return vehicles.VehicleBatch<Vehicle>::Advance(track, request.dt_s, 1, loads, reply, shows);
+}
+
+/// The number of a step from the start of the run.
+long StepOfRun(const ExchangeRequest& request, int step) {
+  return static_cast<long>(request.exchange) * request.steps + step;
+}
+
 /// Equal vehicles with wheel-slide protection.
 template <class Vehicle>
 class ProtectedVehicles : public EqualVehicles<Vehicle> {
@@ -144,14 +158,16 @@ class ProtectedVehicles : public EqualVehicles<Vehicle> {
 
   bool Advance(const Track& track, const ExchangeRequest& request, LoadPlaces loads, const ReplyPlaces& reply,
                bool with_output) {
-    const auto first = static_cast<long>(request.exchange) * request.steps;
     bool sound = true;
     for (int step = 0; step < request.steps; ++step) {
-      loads.wheelset_pressure_pa = protection_.Step(first + step, *this, loads.cylinder_pressure_pa);
-      const bool shows = with_output && step + 1 == request.steps;
-      sound &= VehicleBatch<Vehicle>::Advance(track, request.dt_s, 1, loads, reply, shows);
+      Control(StepOfRun(request, step), loads);
+      sound &= AdvanceStep<Vehicle>(*this, track, request, step, loads, reply, with_output);
     }
     return sound;
+  }
+  /// Puts the cylinders' pressures over the step that comes among the loads.
+  void Control(long step, LoadPlaces& loads) {
+    loads.wheelset_pressure_pa = protection_.Step(step, *this, loads.cylinder_pressure_pa);
   }
 
   void Digests(std::uint64_t* digest) const {
@@ -182,6 +198,58 @@ class ProtectedVehicles : public EqualVehicles<Vehicle> {
 
  private:
   Protection protection_;
+};
+
+/// Equal locomotives with slip control, with wheel-slide protection or without.
+template <class Vehicles>
+class SlipControlledVehicles : public Vehicles {
+  using Vehicle = typename Vehicles::VehicleType;
+  using SlipControl = BatchSlipControl<Vehicle>;
+
+ public:
+  template <class... Arguments>
+  SlipControlledVehicles(double dt, Arguments&&... arguments)
+      : Vehicles(std::forward<Arguments>(arguments)...),
+        slip_control_(*this->vehicle().params.traction->slip_control, dt, *this) {}
+
+  bool Advance(const Track& track, const ExchangeRequest& request, LoadPlaces loads, const ReplyPlaces& reply,
+               bool with_output) {
+    bool sound = true;
+    for (int step = 0; step < request.steps; ++step) {
+      const long of_run = StepOfRun(request, step);
+      if constexpr (!std::is_same_v<Vehicles, EqualVehicles<Vehicle>>) Vehicles::Control(of_run, loads);
+      loads.traction_share = slip_control_.Step(of_run, *this);
+      sound &= AdvanceStep<Vehicle>(*this, track, request, step, loads, reply, with_output);
+    }
+    return sound;
+  }
+
+  void Digests(std::uint64_t* digest) const {
+    Vehicles::Digests(digest);
+    for (int i = 0; i < this->size(); ++i) {
+      Digest with_control;
+      with_control.Add(digest[i]);
+      for (const double number : slip_control_.StateOf(i)) with_control.Add(number);
+      digest[i] = with_control.value();
+    }
+  }
+
+  static constexpr int kNumbers = Vehicles::kNumbers + SlipControl::kNumbers;
+  void Save(int i, StateRow& row) const {
+    Vehicles::Save(i, row);
+    const auto& state = slip_control_.StateOf(i);
+    row.insert(row.end(), state.begin(), state.end());
+  }
+  std::size_t Restore(int i, const StateRow& row) {
+    if (row.size() < kNumbers || Vehicles::Restore(i, row) == 0) return 0;
+    typename SlipControl::State state;
+    std::copy_n(row.begin() + Vehicles::kNumbers, state.size(), state.begin());
+    slip_control_.SetState(i, state);
+    return kNumbers;
+  }
+
+ private:
+  SlipControl slip_control_;
 };
 
 /// Equal vehicles of the 2D model, whose slides are followed.
@@ -224,7 +292,11 @@ class WatchedVehicles : public Vehicles {
 using Batch =
     std::variant<WatchedVehicles<EqualVehicles<Wagon>>, WatchedVehicles<EqualVehicles<SixAxleVehicle>>,
                  EqualVehicles<LtdVehicle>, WatchedVehicles<ProtectedVehicles<Wagon>>,
-                 WatchedVehicles<ProtectedVehicles<SixAxleVehicle>>>;
+                 WatchedVehicles<ProtectedVehicles<SixAxleVehicle>>,
+                 WatchedVehicles<SlipControlledVehicles<EqualVehicles<Wagon>>>,
+                 WatchedVehicles<SlipControlledVehicles<EqualVehicles<SixAxleVehicle>>>,
+                 WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<Wagon>>>,
+                 WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<SixAxleVehicle>>>>;
 
 /// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
@@ -245,10 +317,15 @@ Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioP
     return WithBogieVehicle(params, [&](const auto& vehicle) -> Batch {
       auto vehicles = MakeBatch(vehicle, speed_mps, centre_m);
       using Vehicle = std::decay_t<decltype(vehicle)>;
-      if (!params.wheel_slide_protection) {
-        return WatchedVehicles<EqualVehicles<Vehicle>>(std::move(vehicles));
-      }
-      return WatchedVehicles<ProtectedVehicles<Vehicle>>(std::move(vehicles), scenario.dt_s);
+      using Protected = ProtectedVehicles<Vehicle>;
+      const double dt = scenario.dt_s;
+      const bool has_slip_control = params.traction && params.traction->slip_control;
+      if (has_slip_control && params.wheel_slide_protection)
+        return WatchedVehicles<SlipControlledVehicles<Protected>>(dt, std::move(vehicles), dt);
+      if (has_slip_control)
+        return WatchedVehicles<SlipControlledVehicles<EqualVehicles<Vehicle>>>(dt, std::move(vehicles));
+      if (params.wheel_slide_protection) return WatchedVehicles<Protected>(std::move(vehicles), dt);
+      return WatchedVehicles<EqualVehicles<Vehicle>>(std::move(vehicles));
     });
   }
   const bool with_inertia = model == VehicleModel::kLtd;

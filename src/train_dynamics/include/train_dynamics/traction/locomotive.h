@@ -8,6 +8,7 @@
 #include "train_dynamics/traction/drive.h"
 #include "train_dynamics/traction/dynamic_brake.h"
 #include "train_dynamics/traction/energy_supply.h"
+#include "train_dynamics/traction/slip_control.h"
 #include "train_dynamics/traction/tractive_effort.h"
 
 namespace train_dynamics {
@@ -21,6 +22,8 @@ struct TractionParams {
   std::vector<int> driven_wheelsets;  ///< from 1 in front; empty: all
   /// i^2 J of the motor and its gear, in addition to the pitch inertia of each driven wheelset.
   double drive_inertia_kgm2 = 0.0;
+  std::optional<SlipControlParams>
+      slip_control;  ///< not given: torque follows the effort, whatever slips (2D model)
   std::optional<EnergySupplyParams> energy_supply;
 
   template <class Visitor>
@@ -35,6 +38,7 @@ struct TractionParams {
       repeats = repeats || driven_wheelsets[i] <= driven_wheelsets[i - 1];
     v.Check(!repeats, "driven_wheelsets", "must ascend");
     v.Number("drive_inertia_kgm2", drive_inertia_kgm2, kNonNegative);
+    v.Group("slip_control", slip_control);
     v.Group("energy_supply", energy_supply);
   }
 

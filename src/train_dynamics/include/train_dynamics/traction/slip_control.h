@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cmath>
+
+#include "train_dynamics/numeric/scalar.h"
+#include "train_dynamics/parameters.h"
+
+namespace train_dynamics {
+
+/// Takes torque from driven wheelsets that slip (2D model).
+struct SlipControlParams {
+  double sampling_period_s =
+      0.005;  ///< T_s, a multiple of the step; a wheelset over its limit runs away in 25 ms
+  double target_creepage = 0.02;  ///< s* over the speed
+  double least_slip_mps = 0.1;    ///< s* is never less [A]
+  double gain_per_mps = 0.3;      ///< share of the torque that is taken per slip speed beyond s* [A]
+  double recovery_per_s = 0.2;    ///< share of the torque that comes back per second [A]
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("sampling_period_s", sampling_period_s, Range{0.0, 0.005, true, false});
+    v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true});
+    v.Number("least_slip_mps", least_slip_mps, kPositive);
+    v.Number("gain_per_mps", gain_per_mps, kPositive);
+    v.Number("recovery_per_s", recovery_per_s, kPositive);
+  }
+};
+
+/// The share of its torque that a wheelset must do without from now on [-], 0 ... 1:
+///
+///   reduction = max( K (s - s*),  reduction before - recovery T_s ),   s = u - v,  s* = max(0.02 v, 0.1 m/s)
+///
+/// s > s* takes torque at once; it comes back slowly.
+///
+/// @param reduction        of the sample before
+/// @param speed_mps        v, of the vehicle: the ideal reference
+/// @param wheel_speed_mps  u, of the tread
+inline double NextReduction(const SlipControlParams& p, double reduction, double speed_mps,
+                            double wheel_speed_mps) {
+  // Traction pulls forwards: treads that are faster than the vehicle slip, whichever way it rolls.
+  const double slip_mps = wheel_speed_mps - speed_mps;
+  const double target_mps = Max(p.least_slip_mps, p.target_creepage * std::abs(speed_mps));
+  const double asked = Clamp(p.gain_per_mps * (slip_mps - target_mps), 0.0, 1.0);
+  return Max(asked, Max(0.0, reduction - p.recovery_per_s * p.sampling_period_s));
+}
+
+}  // namespace train_dynamics
