@@ -240,7 +240,7 @@ int MasterNode::Run() {
   if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
   const std::string json = run.Finish(wall_s, rank_fault);
-  if (!run.Warning().empty()) ROS_WARN("%s", run.Warning().c_str());
+  for (const std::string& warning : run.Warnings()) ROS_WARN("%s", warning.c_str());
   int exit_code = run.exit_code();
   if (exit_code != train_run::kFailure && !rank_fault.empty()) exit_code = train_run::kRankFailure;
   std::string fault = rank_fault.empty() ? run.fault() : rank_fault;

@@ -234,6 +234,7 @@ TEST(Conditions, OfAScenarioActAtTheirPlaceAndUntilEndsTheRun) {
   train.master.Start();
   train.RunUntil(1000000);
   ASSERT_EQ(train.master.schedule().Given().size(), 1u);
+  EXPECT_TRUE(train.master.schedule().NotGiven().empty());
   // 50 m at 20 km/h with some resistance: just after 9.0 s
   const double given_s = 1e-3 * static_cast<double>(train.master.schedule().Given()[0].exchange);
   EXPECT_GT(given_s, 9.0);
@@ -243,6 +244,18 @@ TEST(Conditions, OfAScenarioActAtTheirPlaceAndUntilEndsTheRun) {
   EXPECT_LT(std::abs(train.last.mean_speed_mps), 0.01);
   EXPECT_EQ(train.master.exchange() % 10, 0u);  // at a record,
   EXPECT_TRUE(train.last.ledger.has_value());   // with its ledger
+}
+
+TEST(Conditions, ThatNeverComeTrueAreTold) {
+  Driven train({"duration_s=1"},
+               "[{time_s: 0.5, kind: release}, {when: {position_m: 500}, kind: apply, "
+               "reduction_kpa: 100}, {exchange: 5000, kind: emergency}]");
+  train.master.Start();
+  train.RunUntil(1000);
+  EXPECT_EQ(
+      train.master.schedule().NotGiven(),
+      (std::vector<std::string>{"commands[1] (apply 100 kPa) was not given: its condition did not come true",
+                                "commands[2] (emergency) was not given: the run ended before its exchange"}));
 }
 
 }  // namespace

@@ -97,6 +97,13 @@ std::string TrainRun::Finish(double wall_s, const std::string& fault) {
   return json;
 }
 
+std::vector<std::string> TrainRun::Warnings() const {
+  std::vector<std::string> warnings;
+  if (master_.Done()) warnings = master_.schedule().NotGiven();
+  if (!summary_.RouteWarning().empty()) warnings.push_back(summary_.RouteWarning());
+  return warnings;
+}
+
 ExitCode TrainRun::exit_code() const {
   if (!write_error_.empty()) return kFailure;
   if (!fault_.empty()) return kSimulationFault;

@@ -96,7 +96,7 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
   train_console::Print("{}", json);
-  if (!run.Warning().empty()) train_console::Tell("warning: {}\n", run.Warning());
+  Print(run.Warnings());
   const double end_s = run.master().time_s();
   switch (run.exit_code()) {
     case train_run::kFailure:

@@ -251,13 +251,6 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::optional<std::string> summarised = DigestInSummary(options.recording);
   LoadedScenario scenario = ScenarioOf(options, recorded);
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
-  for (const train_dynamics::DriverCommand& command : recorded.LiveCommands()) {
-    const auto& known = scenario.params.commands;  // of a replay.yaml, too
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& other) {
-      return other.exchange == command.exchange && other.Text() == command.Text();
-    });
-    if (!is_known) scenario.params.commands.push_back(command);
-  }
   const ScenarioParams& params = scenario.params;
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));
   Comparison comparison(recorded, scenario.consist.vehicles());
@@ -273,6 +266,16 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   train_run::CatchInterrupts();
   if (branch) comparison.BeginAt(*branch, params);
   train_run::RunHooks hooks;
+  // What came live is given again, each at its exchange; what a branch took over is in its checkpoint.
+  const std::vector<train_dynamics::DriverCommand> live = recorded.LiveCommands();
+  std::size_t next_live = 0;
+  while (next_live < live.size() && *live[next_live].exchange < static_cast<double>(first)) ++next_live;
+  hooks.admits = [&] {
+    for (; next_live < live.size() && *live[next_live].exchange <= static_cast<double>(master.exchange());
+         ++next_live)
+      run.Command(live[next_live]);
+    return true;
+  };
   hooks.ends = [&] { return comparison.Finished() || train_run::Interrupt() != 0; };
   run.Go(hooks);
   progress.Finish();

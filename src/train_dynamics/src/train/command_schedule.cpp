@@ -35,12 +35,14 @@ bool ConditionWatch::Holds(const Situation& now) {
 CommandSchedule::CommandSchedule(const std::vector<DriverCommand>& commands,
                                  const std::optional<ConditionParams>& until) {
   std::optional<double> latest_s;
-  for (const DriverCommand& command : commands) {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const DriverCommand& command = commands[i];
     if (command.time_s) {
       latest_s = std::max(latest_s.value_or(0.0), *command.time_s);
       continue;
     }
     Awaited awaited;
+    awaited.index = i;
     awaited.command = command;
     if (command.when) awaited.watch.emplace(*command.when);
     awaited.not_before_s = latest_s;
@@ -49,6 +51,12 @@ CommandSchedule::CommandSchedule(const std::vector<DriverCommand>& commands,
   if (!until) return;
   until_.emplace(*until);
   until_stands_ = until->standing;
+}
+
+bool CommandSchedule::IsDone() const {
+  return !until_ && live_.empty() &&
+         std::all_of(commands_.begin(), commands_.end(),
+                     [](const Awaited& awaited) { return awaited.is_given != 0.0; });
 }
 
 void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& given) {
@@ -74,6 +82,17 @@ void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& giv
   live_.clear();
   if (std::abs(now.speed_mps) > kStandingMps) has_moved_ = 1.0;
   if (until_ && (has_moved_ != 0.0 || !until_stands_) && until_->Holds(now)) end_is_reached_ = 1.0;
+}
+
+std::vector<std::string> CommandSchedule::NotGiven() const {
+  std::vector<std::string> sentences;
+  for (const Awaited& awaited : commands_) {
+    if (awaited.is_given != 0.0) continue;
+    sentences.push_back(
+        "commands[" + std::to_string(awaited.index) + "] (" + awaited.command.Text() + ") was not given: " +
+        (awaited.watch ? "its condition did not come true" : "the run ended before its exchange"));
+  }
+  return sentences;
 }
 
 template <class Self, class Function>

@@ -87,7 +87,7 @@ void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
   if (can_part_) OpenPipes();
-  if (!schedule_.empty()) GiveCommands();
+  if (!schedule_.IsDone()) GiveCommands();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
   locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/train/run_summary.h"
@@ -58,8 +59,9 @@ class TrainRun {
   /// Completes the results. @param fault  why the run ended, where it is not one that Go has kept
   /// @return the summary as JSON
   std::string Finish(double wall_s, const std::string& fault = "");
-  /// What the user should know of the run beside its summary; empty: nothing.
-  std::string Warning() const { return summary_.RouteWarning(); }
+  /// What the user should know of the run beside its summary, once it has ended: a route that was left, and, of a whole run,
+  /// commands that were never given.
+  std::vector<std::string> Warnings() const;
 
   /// See TrainMaster::Command; between two exchanges.
   void Command(const train_dynamics::DriverCommand& command) { master_.Command(command); }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "train_dynamics/train/driver_command.h"
@@ -59,8 +60,8 @@ class CommandSchedule {
   /// @param until  where it holds, the run is to end; `standing` counts once the train has moved
   CommandSchedule(const std::vector<DriverCommand>& commands, const std::optional<ConditionParams>& until);
 
-  /// Whether there is anything to watch.
-  bool empty() const { return commands_.empty() && !until_ && live_.empty(); }
+  /// Whether there is nothing to judge: no `until`, and every command has been given.
+  bool IsDone() const;
   /// A command from outside, for the start of the next exchange.
   void Add(const DriverCommand& command) { live_.push_back(command); }
 
@@ -72,12 +73,16 @@ class CommandSchedule {
   /// All commands that have been given by conditions or from outside, in their order.
   const std::vector<GivenCommand>& Given() const { return given_; }
 
+  /// Those that wait for a condition or an exchange still, as sentences.
+  std::vector<std::string> NotGiven() const;
+
   /// As numbers, and back. @throws SnapshotError if they are not those of such a schedule
   std::vector<double> Memory() const;
   void SetMemory(const std::vector<double>& memory);
 
  private:
   struct Awaited {
+    std::size_t index = 0;  ///< in the scenario's list
     DriverCommand command;
     std::optional<ConditionWatch> watch;
     std::optional<double> not_before_s;  ///< the latest time of the commands before it in the list
