@@ -16,7 +16,7 @@ namespace {
 
 struct Recorded {
   std::vector<double> time_s;
-  std::vector<std::vector<double>> cylinder_pa, pipe_pa, mode;
+  std::vector<std::vector<double>> cylinder_pa, pipe_pa, auxiliary_pa, mode;
   std::vector<double> speed_kmh;
   std::uint64_t digest = 0;
 
@@ -44,6 +44,7 @@ Recorded Simulated(const std::string& scenario, const std::vector<std::string>& 
     run.time_s.push_back(record.time_s);
     run.cylinder_pa.push_back(record.cylinder_pressure_pa);
     run.pipe_pa.push_back(record.brake.pipe_pressure_pa);
+    run.auxiliary_pa.push_back(record.brake.auxiliary_reservoir_pa);
     run.mode.push_back(record.brake.valve_mode);
     run.speed_kmh.push_back(3.6 * record.mean_speed_mps);
   });
@@ -61,27 +62,62 @@ TEST(Scenario, Charging) {
     ASSERT_EQ(run.cylinder_pa[i].back(), 0.0);
 }
 
+// An applied AB valve, filled up. It stops feeding at 1.7 kPa between reservoir and pipe and feeds again at 5.2, so the reservoir stands
+// between; 0.2 kPa for what a pipe falling at 20 kPa/s does in two steps of 5 ms. The cylinder has 41.0 / 16.4 = 2.5 times
+// what its reservoir gave since it was at `before_pa`, and what the limiting valve took from the pipe, which ends at 70 kPa.
+void ExpectApplied(const Recorded& run, double t, std::size_t vehicle, double before_pa) {
+  const std::size_t i = run.At(t);
+  const double auxiliary = run.auxiliary_pa[i][vehicle], above = auxiliary - run.pipe_pa[i][vehicle];
+  EXPECT_TRUE(run.mode[i][vehicle] == 1.0 || run.mode[i][vehicle] == 2.0)
+      << vehicle;  // feeds at times while the pipe still falls
+  EXPECT_GE(above, 1.7e3 - 0.2e3) << vehicle;
+  EXPECT_LE(above, 5.2e3 + 0.2e3) << vehicle;
+  const double of_pipe = run.cylinder_pa[i][vehicle] - 2.5 * (before_pa - auxiliary);
+  EXPECT_GE(of_pipe, -0.1e3) << vehicle;
+  EXPECT_LE(of_pipe, 70e3) << vehicle;
+}
+
+// The 428.6 kPa of equalisation, 600 kPa 2.5/3.5, need a pipe below the reservoir at the end; with 170 kPa a valve laps
+// 1.7 to 5.2 kPa before it: 2.5 (170 - 5.2) = 412.0 kPa at least, where the pipe has arrived at 430 kPa.
 TEST(Scenario, FullServiceAb) {
   const Recorded run = Simulated("full_service_ab");
-  EXPECT_EQ(run.InEmergency(120.0), 0);
-  const std::vector<double>& head = run.cylinder_pa[run.At(40.0)];
-  EXPECT_GT(head.front(), head.back() + 50e3);  // the tail is behind
-  // 2.5 (reduction - d): a valve laps while the pipe is d below its reservoir, d at most the 5.2 kPa at which it applies.
-  const double most = 2.5 * 170e3, least = 2.5 * (170e3 - 5.2e3);
-  EXPECT_LT(head.front(), most);
-  EXPECT_GT(head.front(), least);
-  for (double p : run.cylinder_pa.back()) {
-    EXPECT_LT(p, most);
-    EXPECT_GT(p, least);
+  EXPECT_EQ(run.InEmergency(119.0), 0);
+  const std::vector<double>& at_40 = run.cylinder_pa[run.At(40.0)];
+  EXPECT_GT(at_40.front(), at_40.back() + 50e3);  // the tail is behind
+  ExpectApplied(run, 40.0, 0, 600e3);
+  for (std::size_t v = 0; v < 150; ++v) {
+    SCOPED_TRACE(v);
+    ExpectApplied(run, 119.9, v, 600e3);
+    const std::size_t end = run.At(119.9);
+    EXPECT_NEAR(run.pipe_pa[end][v], 430e3, 2e3);
+    EXPECT_GT(run.cylinder_pa[end][v], 2.5 * (600e3 - run.pipe_pa[end][v] - 5.4e3));
+    EXPECT_LT(run.cylinder_pa[end][v], 428.6e3);
   }
 }
 
+// Speed of a rigid train of ore wagons of the paper with the run's mean cylinder pressure: Eq 3 and Eq 5, 160.1 t and the
+// wheelsets' 4 x 679 kg m2 / (0.485 m)^2 = 11.5 t.
+double RigidSpeedKmh(const Recorded& run, double initial_kmh, double t_end) {
+  const double mass = 147599.8 + 2.0 * (1103.9 + 1665.5) + 4.0 * 1731.8 + 8.0 * 6.0;
+  const double inert = mass + 4.0 * 679.0 / (0.485 * 0.485);
+  double v = initial_kmh;  // km/h
+  for (std::size_t i = 1; i < run.time_s.size() && run.time_s[i] <= t_end + 1e-6 && v > 0.0; ++i) {
+    const double brake = 0.46035 * run.MeanCylinder(run.time_s[i]) * 0.322 * (v + 150.0) / (2.0 * v + 150.0);
+    const double drag = mass * 9.81e-3 * (0.92 + 0.0048 * v + 0.000125 * v * v);
+    v -= 3.6 * (brake + drag) / inert * (run.time_s[i] - run.time_s[i - 1]);
+  }
+  return std::max(v, 0.0);
+}
+
+// 514 kPa are 0.37 m/s2 on average: 22.2 m/s need more than 60 s. At rest before 70 s, where the paper's 430 kPa still
+// leave 9.8 km/h.
 TEST(Scenario, EmergencyAb) {
   const Recorded run = Simulated("emergency_ab");
   EXPECT_EQ(run.InEmergency(10.0), 242);
-  // Auxiliary and emergency reservoir into the cylinder: 6/7 of the charge, above full service's 5/7.
-  EXPECT_NEAR(run.MeanCylinder(60.0), 6.0 / 7.0 * 600e3, 0.03 * 600e3);
-  EXPECT_LT(run.speed_kmh[run.At(60.0)], run.speed_kmh[run.At(30.0)] - 20.0);
+  for (double p : run.cylinder_pa.back()) EXPECT_NEAR(p, 600e3 * 6.0 / 7.0, 0.5e3);  // both reservoirs
+  EXPECT_NEAR(run.speed_kmh[run.At(30.0)], RigidSpeedKmh(run, 80.0, 30.0), 0.3);
+  EXPECT_NEAR(run.speed_kmh[run.At(60.0)], RigidSpeedKmh(run, 80.0, 60.0), 0.3);
+  EXPECT_LT(run.speed_kmh.back(), 0.1);
 }
 
 // 70 kPa, released for 15 s, then 50 kPa: the reservoirs of the rear are still at 530 kPa, the pipe settles at 550 kPa, and
@@ -97,21 +133,35 @@ TEST(Scenario, CycleBrakingLongGrade) {
   EXPECT_GT(released(179.0), 75);
   EXPECT_EQ(run.cylinder_pa[run.At(179.0)].back(), 0.0);
   EXPECT_EQ(released(299.0), 0);
-  // Applied, but weaker than the 2.5 x 100 kPa of a charged train: its reservoirs had not been filled again.
-  EXPECT_GT(run.cylinder_pa[run.At(299.0)].back(), 70e3);
-  EXPECT_LT(run.cylinder_pa[run.At(299.0)].back(), 0.8 * 250e3);
+  // The tail's reservoirs have 546 kPa at 180 s: 100 kPa below 600 are only 46 below them. So the tail's cylinders have 2.5
+  // (46 - 5.2) kPa at least, and with all that the limiting valve may add no more than 2.5 (46 - 1.7) + 70, where the head's,
+  // that never let go, have 2.5 (100 - 5.2) at least.
+  const double tail_reservoir = run.auxiliary_pa[run.At(179.0)].back();
+  EXPECT_LT(tail_reservoir, 550e3);  // not above the pipe that the driver holds
+  ExpectApplied(run, 299.0, 149, tail_reservoir);
+  EXPECT_GT(run.cylinder_pa[run.At(299.0)].back(), 2.5 * (tail_reservoir - 500e3 - 5.4e3));
+  EXPECT_LT(run.cylinder_pa[run.At(299.0)].back(), 2.5 * (tail_reservoir - 500e3 - 1.5e3) + 70e3);
+  EXPECT_GT(run.cylinder_pa[run.At(299.0)].front(), 2.5 * (100e3 - 5.4e3));
   EXPECT_EQ(run.InEmergency(299.0), 0);
 }
 
 TEST(Scenario, EcpAgainstHeadEnd) {
   const Recorded ecp = Simulated("ecp_against_head_end"),
                  head = Simulated("ecp_against_head_end", {"brake=ab_head_end"});
-  // 10 s after the command, each beside its own full pressure.
-  const double ratio =
-      (ecp.MeanCylinder(12.0) / ecp.MeanCylinder(60.0)) / (head.MeanCylinder(12.0) / head.MeanCylinder(60.0));
-  // ECP is ahead; the published band, 1.38 to 1.52, is that of 100 cars of 60 ft: pneumatic_brake_test.
-  EXPECT_GT(ratio, 1.2);
-  EXPECT_LT(ratio, 1.52);
+  // Each beside its own full pressure. ECP is ahead until both are full, and ever less so.
+  const auto ratio = [&](double after_s) {
+    return (ecp.MeanCylinder(2.0 + after_s) / ecp.MeanCylinder(60.0)) /
+           (head.MeanCylinder(2.0 + after_s) / head.MeanCylinder(60.0));
+  };
+  for (double t = 1.0; t < 20.0; t += 1.0) EXPECT_GT(ratio(t), ratio(t + 1.0)) << t;
+  EXPECT_GT(ratio(15.0), 1.0);
+  EXPECT_NEAR(ratio(30.0), 1.0, 0.005);
+  // A wave of 290 m/s and a linear build-up of 10 s: 1 / (1 - L / 5800 m) at 10 s. The published 100 cars of 60 ft (1829 m)
+  // have 1.46, accepted from 1.38 to 1.52 (pneumatic_brake_test); this train of 1575 m is shorter: 1.373. The same band,
+  // -0.08 and +0.06, beside it.
+  const double estimate = 1.0 / (1.0 - 150 * 10.5 / 5800.0);
+  EXPECT_GT(ratio(10.0), estimate - 0.08);
+  EXPECT_LT(ratio(10.0), estimate + 0.06);
 }
 
 TEST(Scenario, HoseParted) {
@@ -134,17 +184,50 @@ TEST(Scenario, DistributedPowerRadioLoss) {
   EXPECT_GT(lost.cylinder_pa[lost.At(119.0)][110], 0.6 * heard.cylinder_pa[heard.At(119.0)][110]);
 }
 
+// The cylinder of a distributor of 500 kPa with 380 kPa at most over the recorded pipe: to 95 % in fill_s, from 95 % down to
+// 40 kPa in release_s, never below the first step of a tenth while it is applied.
+double DistributorPa(const Recorded& run, std::size_t vehicle, double fill_s, double release_s,
+                     double t_end) {
+  const double fill = std::log(10.5) / fill_s, release = std::log(0.95 * 380.0 / 40.0) / release_s;
+  double p = 0.0;
+  bool applied = false;
+  for (std::size_t i = 1; i < run.time_s.size() && run.time_s[i] <= t_end + 1e-6; ++i) {
+    const double below = 500e3 - run.pipe_pa[i][vehicle], dt = run.time_s[i] - run.time_s[i - 1];
+    applied = below > (applied ? 5e3 : 15e3);
+    const double goal = applied ? std::clamp(3.8 / 1.5 * below, 38e3, 380e3) : 0.0;
+    if (p < goal) {
+      p = std::min(goal, p + dt * std::max(p < 38e3 ? 38e3 : 0.0, fill * (1.05 * goal - p)));
+    } else {
+      p -= dt * release * (p - goal);
+    }
+  }
+  return p;
+}
+
 TEST(Scenario, MixedGP) {
-  const Recorded run = Simulated("mixed_g_p");
+  const Recorded run = Simulated("mixed_g_p", {"duration_s=240"});
+  // Vehicles 6 (G) and 7 (P) are neighbours and have nearly one pipe pressure; the locomotive has another, earlier one.
   const std::vector<double>& early = run.cylinder_pa[run.At(12.0)];
-  EXPECT_LT(early[5], 0.7 * early[6]);  // neighbours under one pipe pressure: the last in G, the first in P
-  // Let down by a step: on the way from the full pressure to that of 70 kPa.
-  const double before = run.cylinder_pa[run.At(24.9)][10], graduated = run.cylinder_pa[run.At(44.0)][10];
-  EXPECT_LT(graduated, before - 100e3);
-  EXPECT_GT(graduated, 2.5333 * 70e3 - 5e3);
-  // At the end the pipe is still being charged; no cylinder is below what its pipe asks for, 3.8/1.5 (500 kPa - p).
-  EXPECT_GT(run.cylinder_pa.back()[10], 2.5333 * (500e3 - run.pipe_pa.back()[10]) - 1e3);
-  EXPECT_LT(run.cylinder_pa.back()[10], 0.25 * before);
+  EXPECT_NEAR(run.pipe_pa[run.At(12.0)][5], run.pipe_pa[run.At(12.0)][6], 10e3);
+  EXPECT_LT(early[5], 0.6 * early[6]);
+  for (double t : {12.0, 24.0, 44.0}) {
+    EXPECT_NEAR(run.cylinder_pa[run.At(t)][5], DistributorPa(run, 5, 24.0, 52.5, t), 5e3) << t;
+    EXPECT_NEAR(run.cylinder_pa[run.At(t)][10], DistributorPa(run, 10, 4.0, 17.5, t), 5e3) << t;
+  }
+  // Let down by a step, to 2.533 x 70 kPa; 19 s are two time constants of P (8 s) with the pipe's rise before them: above
+  // it still, below what it was.
+  const std::vector<double>& graduated = run.cylinder_pa[run.At(44.0)];
+  EXPECT_GT(graduated[10], 2.5333 * 70e3);
+  EXPECT_LT(graduated[10], 0.65 * run.cylinder_pa[run.At(24.9)][10]);
+  // A distributor lets go once its pipe is within 5 kPa; until then it has the first step at least. How long that takes the
+  // pipe: docs/air_brake.md.
+  for (std::size_t v = 0; v < 50; ++v) {
+    const double pipe = run.pipe_pa[run.At(119.9)][v], cylinder = run.cylinder_pa[run.At(119.9)][v];
+    if (pipe < 494e3) {
+      EXPECT_GT(cylinder, 37.9e3) << v;
+    }
+    EXPECT_LT(run.cylinder_pa.back()[v], 1e3) << v;
+  }
 }
 
 TEST(Scenario, TheSameDigestAgain) {
