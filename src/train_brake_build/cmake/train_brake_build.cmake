@@ -1,6 +1,8 @@
 # How every C++ target of the workspace is compiled. A package that finds train_brake_build has these functions:
 #
 #   train_brake_configure_target(target)              C++17, warnings, reproducible arithmetic, sanitizers
+#   train_brake_add_package_library(lib...)           the package's own library: src/*.cpp and include/, installed, with the
+#                                                     tests in test/ and the fuzz targets in fuzz/; uses lib...
 #   train_brake_add_gtests(file... LIBRARIES lib...)  one GoogleTest executable per file
 #   train_brake_add_fuzz_targets(file... LIBRARIES lib...)  one fuzz target per file
 
@@ -82,3 +84,31 @@ function(train_brake_add_fuzz_targets)
     endif()
   endforeach()
 endfunction()
+
+# After catkin_package(). A macro, because catkin's functions read variables of the package.
+macro(train_brake_add_package_library)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.cpp)
+  add_library(${PROJECT_NAME} ${sources})
+  if(catkin_EXPORTED_TARGETS)
+    add_dependencies(${PROJECT_NAME} ${catkin_EXPORTED_TARGETS})
+  endif()
+  target_include_directories(${PROJECT_NAME} PUBLIC include)
+  target_include_directories(${PROJECT_NAME} SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${PROJECT_NAME} ${catkin_LIBRARIES} ${ARGN})
+  train_brake_configure_target(${PROJECT_NAME})
+
+  install(TARGETS ${PROJECT_NAME}
+    ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+    LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  )
+  install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+
+  if(CATKIN_ENABLE_TESTING)
+    file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/*_test.cpp)
+    train_brake_add_gtests(${tests} LIBRARIES ${PROJECT_NAME})
+    file(GLOB fuzz_targets CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/fuzz/*_fuzz.cpp)
+    if(fuzz_targets)
+      train_brake_add_fuzz_targets(${fuzz_targets} LIBRARIES ${PROJECT_NAME})
+    endif()
+  endif()
+endmacro()
