@@ -24,7 +24,7 @@ import unittest
 
 import rosunit
 
-from launches import SHORT_TRAIN, Launch, RosMaster, is_beginning, messages, train_sim, wait_until
+from launches import SHORT_TRAIN, Launch, LaunchTest, is_beginning, messages, train_sim, wait_until
 
 DURATION = 2.0  # [s] of the train, and of wall time: long enough to be met on its way, with a snapshot after the first half
 EXCHANGES = 1000
@@ -56,23 +56,10 @@ def undisturbed(settings):
     return undisturbed_runs[settings]
 
 
-class Matrix(unittest.TestCase):
+class Matrix(LaunchTest):
     """What cells are made of."""
 
     settings = f"duration_s={DURATION:g}"
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.master = RosMaster(folder.name)
-        self.addCleanup(self.end_everything)
-
-    def end_everything(self):
-        for process in self.master.processes():
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(process, signal.SIGKILL)
-        self.master.kill()
 
     def launch(self, *arguments, nodes=2):
         """train.launch, with respawn."""

@@ -13,7 +13,6 @@ FAULT is one of
   md5sum    the node has another definition of the service
 EXCHANGE is that of the reply that is spoilt: 0, 1, ...; -1: the reply to Configure.
 """
-import sys
 import time
 
 import rospy

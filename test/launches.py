@@ -8,8 +8,10 @@ import re
 import signal
 import socket
 import subprocess
+import tempfile
 import threading
 import time
+import unittest
 
 import rosbag
 import rosgraph
@@ -123,6 +125,28 @@ class Launch:
 
     def bag(self):
         return messages(self.out / "train.bag")
+
+
+class LaunchTest(unittest.TestCase):
+    """Tests with a ROS master and a folder of their own; whatever has been started ends with the test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.master = RosMaster(folder.name)
+        self.addCleanup(self.end_everything)
+
+    def end_everything(self):
+        for process in self.master.processes():
+            subprocess.run(["kill", "-9", str(process)], stderr=subprocess.DEVNULL, check=False)
+        self.master.kill()
+
+    def tool(self, *command, timeout_s=30):
+        """The output of a command, to its end."""
+        done = subprocess.run(command, env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=timeout_s, check=False)
+        return done.stdout
 
 
 def messages(bag_file):

@@ -4,35 +4,16 @@ import json
 import pathlib
 import random
 import subprocess
-import tempfile
-import unittest
 
 import rosunit
 
-from launches import Launch, RosMaster, train_sim, wait_until
+from launches import Launch, LaunchTest, train_sim, wait_until
 
 HERE = pathlib.Path(__file__).resolve().parent
 SETTINGS = ["duration_s=8", "ledger_interval_s=1", "record_interval_s=0.02", "commands=[]", "initial_speed_kmh=30"]
 
 
-class LiveCommands(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.master = RosMaster(folder.name)
-        self.addCleanup(self.end_everything)
-
-    def end_everything(self):
-        for process in self.master.processes():
-            subprocess.run(["kill", "-9", str(process)], stderr=subprocess.DEVNULL)
-        self.master.kill()
-
-    def tool(self, *command):
-        done = subprocess.run(command, env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=60)
-        return done.stdout
-
+class LiveCommands(LaunchTest):
     def give(self, **command):
         return self.tool("rosservice", "call", "/train/driver/give", json.dumps({"command": command}))
 

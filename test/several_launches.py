@@ -7,30 +7,17 @@ import shutil
 import subprocess
 import tempfile
 import time
-import unittest
 
 import rosbag
 import rosgraph
 import rosunit
 
-from launches import SHORT_TRAIN, Launch, RosMaster, messages, train_sim, wait_until
+from launches import SHORT_TRAIN, Launch, LaunchTest, messages, train_sim, wait_until
 
 SOON = 30.0
 
 
-class SeveralLaunches(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.master = RosMaster(folder.name)
-        self.addCleanup(self.end_everything)
-
-    def end_everything(self):
-        for process in self.master.processes():
-            subprocess.run(["kill", "-9", str(process)], stderr=subprocess.DEVNULL)
-        self.master.kill()
-
+class SeveralLaunches(LaunchTest):
     def launch(self, name, *arguments, namespace=None, **options):
         folder = self.folder / name
         folder.mkdir()
@@ -45,11 +32,6 @@ class SeveralLaunches(unittest.TestCase):
                               env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               timeout=60)
         return done.returncode, done.stdout
-
-    def tool(self, *command, timeout_s=30):
-        done = subprocess.run(command, env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=timeout_s)
-        return done.stdout
 
     def call(self, service, *arguments):
         return self.tool("rosservice", "call", service, *arguments)

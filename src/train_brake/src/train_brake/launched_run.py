@@ -51,12 +51,12 @@ def parse(words):
     return scenario, places[0] if places else "", arguments
 
 
-def vehicles_of(scenario):
-    """Checks a scenario file; errors go to the terminal. @return its number of vehicles; None: it cannot be used"""
+def scenario_of(file):
+    """Checks a scenario file; errors go to the terminal. @return what `train_sim check --json` tells; None: it cannot be used"""
     check = subprocess.run(
-        ["rosrun", "train_sim", "train_sim", "check", "--json", scenario], stdout=subprocess.PIPE, text=True, check=False
+        ["rosrun", "train_sim", "train_sim", "check", "--json", file], stdout=subprocess.PIPE, text=True, check=False
     )
-    return json.loads(check.stdout)["vehicles"] if check.returncode == 0 else None
+    return json.loads(check.stdout) if check.returncode == 0 else None
 
 
 class EndOfMaster:
@@ -176,11 +176,13 @@ def run(words):
     wants_report = arguments.pop("report", "true").lower() not in ("false", "0")
     os.environ["PWD"] = os.getcwd()  # what the launch file takes relative paths from
     checked = scenario or str(pathlib.Path(arguments["resume"]).expanduser() / "config.yaml")
-    if "vehicles" not in arguments:
-        vehicles = vehicles_of(checked)
-        if vehicles is None:
-            return 2
-        arguments["vehicles"] = vehicles
+    told = scenario_of(checked)
+    if told is None:
+        return 2
+    arguments.setdefault("vehicles", told["vehicles"])
+    # The launch file takes 2d, and one wagon node per core, where it is told nothing: an LTD train needs none.
+    if told["model"] in ("ltd", "ltd-no-inertia"):
+        arguments.setdefault("model", told["model"])
     if scenario:
         arguments["scenario"] = os.path.abspath(scenario)
     if out:

@@ -6,7 +6,6 @@ import pathlib
 from typing import List, Optional
 
 import numpy
-from train_brake.bag import BagError
 from train_brake.run import bag_of, load_yaml, parsed, read_couplers, text_of
 
 from train_brake_report import consist

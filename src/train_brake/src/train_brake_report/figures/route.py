@@ -5,7 +5,7 @@ import numpy
 from train_brake_report import consist, style
 from train_brake_report.figure import Figure, LeftOut, Table, minus, new_canvas
 from train_brake_report.group import Group
-from train_brake_report.run import KMH_PER_MPS, Run
+from train_brake_report.run import Run
 from train_brake_report.track import PERMILLE, Track
 
 KN, KPA, KM = 1e-3, 1e-3, 1e-3
