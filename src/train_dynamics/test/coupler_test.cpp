@@ -43,7 +43,7 @@ TEST(DraftGear, SmoothForceIsEq4) {
         const double d = 0.5 * std::max(std::abs(q) - 0.005, 0.0);
         const double w = (q < 0.0 ? -0.5 : 0.5) * rate;
         const double spring = 18800.0 * std::min(d / 0.001, 1.0) + 40e6 * d;
-        const double mu = (0.052 + (0.33 - 0.052) * std::exp(-std::abs(w) / 0.278)) * std::tanh(w / 0.0384);
+        const double mu = (0.05 + (0.33 - 0.05) * std::exp(-std::abs(w) / 0.278)) * std::tanh(w / 0.0384);
         const double size = spring * tan_phi / (tan_phi - mu) + 1e8 * std::max(d - 0.083, 0.0);
         // Rounding: the wedge's denominator tan(phi) - mu may be a fifth of its terms.
         EXPECT_NEAR(Smooth(p, q, rate), q < 0.0 ? -size : size, 1e-14 * size + 1e-9) << q << " " << rate;
@@ -208,7 +208,7 @@ TEST(DraftGear, StickSpringStaysBetweenItsBranchesAndSticks) {
               loaded - 1e-5 * p.stick_stiffness_n_per_m, 1e-6);
   // Pulled back further it is on the unloading branch.
   const double tan_phi = std::tan(22.0 * kPi / 180.0);
-  const double mu = 0.052 + (0.33 - 0.052) * std::exp(-0.5 * 1e-3 / 0.278);
+  const double mu = 0.05 + (0.33 - 0.05) * std::exp(-0.5 * 1e-3 / 0.278);
   const GearForce<double> back = StickSpringGearForce(gear, 0.06, -1e-3, stick);
   EXPECT_NEAR(back.force, back.elastic * tan_phi / (tan_phi + mu), 1e-9 * back.elastic);
 }
