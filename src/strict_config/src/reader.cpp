@@ -87,7 +87,7 @@ Reader::Reader(ReadSession& session, const Place& place)
   session.read[place.path.text] = {place.map, place.source, place.path.part};
 }
 
-void Reader::Number(const char* key, double& value, const Range& range) {
+void Reader::Number(const char* key, double& value, const Range& range, const char* /*meaning*/) {
   if (const Value found = Find(key)) {
     if (const std::optional<double> number = ReadNumber(found, key, range)) value = *number;
     NoteNumber(key, value, false);
@@ -98,14 +98,15 @@ void Reader::Number(const char* key, double& value, const Range& range) {
   }
 }
 
-void Reader::Number(const char* key, std::optional<double>& value, const Range& range) {
+void Reader::Number(const char* key, std::optional<double>& value, const Range& range,
+                    const char* /*meaning*/) {
   const Value found = Find(key);
   if (!found) return;
   if (const std::optional<double> number = ReadNumber(found, key, range)) value = number;
   if (value) NoteNumber(key, *value, false);
 }
 
-void Reader::Integer(const char* key, int& value, const Range& range) {
+void Reader::Integer(const char* key, int& value, const Range& range, const char* /*meaning*/) {
   if (const Value found = Find(key)) {
     if (const std::optional<int> number = ReadInteger(found, key, range)) value = *number;
     NoteNumber(key, value, false);
@@ -116,7 +117,7 @@ void Reader::Integer(const char* key, int& value, const Range& range) {
   }
 }
 
-void Reader::Flag(const char* key, bool& value) {
+void Reader::Flag(const char* key, bool& value, const char* /*meaning*/) {
   const Value found = Find(key);
   if (!found) return;
   const bool is_plain = found.node->kind == Node::Kind::kScalar && !found.node->quoted;
@@ -128,7 +129,7 @@ void Reader::Flag(const char* key, bool& value) {
   }
 }
 
-void Reader::Text(const char* key, std::string& value) {
+void Reader::Text(const char* key, std::string& value, const char* /*meaning*/) {
   const Value found = Find(key);
   if (!found) return;
   if (found.node->kind == Node::Kind::kScalar) {
@@ -138,7 +139,8 @@ void Reader::Text(const char* key, std::string& value) {
   }
 }
 
-void Reader::Numbers(const char* key, std::vector<double>& values, const Range& range) {
+void Reader::Numbers(const char* key, std::vector<double>& values, const Range& range,
+                     const char* /*meaning*/) {
   const std::optional<Value> list = FindItems(key, "numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();
@@ -147,7 +149,8 @@ void Reader::Numbers(const char* key, std::vector<double>& values, const Range& 
   }
 }
 
-void Reader::Integers(const char* key, std::vector<int>& values, const Range& range) {
+void Reader::Integers(const char* key, std::vector<int>& values, const Range& range,
+                      const char* /*meaning*/) {
   const std::optional<Value> list = FindItems(key, "whole numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();

@@ -5,7 +5,7 @@
 
 namespace strict_config {
 
-void Validator::Number(const char* key, double value, const Range& range) {
+void Validator::Number(const char* key, double value, const Range& range, const char* /*meaning*/) {
   if (std::isnan(value)) {
     Report(key, "is missing (" + range.Rule() + ")");
   } else if (!range.Contains(value)) {
@@ -13,7 +13,7 @@ void Validator::Number(const char* key, double value, const Range& range) {
   }
 }
 
-void Validator::Integer(const char* key, int value, const Range& range) {
+void Validator::Integer(const char* key, int value, const Range& range, const char* /*meaning*/) {
   if (value == kRequiredInteger) {
     Report(key, "is missing (" + range.Rule() + ")");
   } else if (!range.Contains(value)) {
@@ -21,14 +21,16 @@ void Validator::Integer(const char* key, int value, const Range& range) {
   }
 }
 
-void Validator::Numbers(const char* key, const std::vector<double>& values, const Range& range) {
+void Validator::Numbers(const char* key, const std::vector<double>& values, const Range& range,
+                        const char* /*meaning*/) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (range.Contains(values[i])) continue;
     Report(key + ("[" + std::to_string(i) + "]"), range.Rule() + ", got " + ShortestDecimal(values[i]));
   }
 }
 
-void Validator::Integers(const char* key, const std::vector<int>& values, const Range& range) {
+void Validator::Integers(const char* key, const std::vector<int>& values, const Range& range,
+                         const char* /*meaning*/) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (range.Contains(values[i])) continue;
     Report(key + ("[" + std::to_string(i) + "]"), range.Rule() + ", got " + std::to_string(values[i]));

@@ -117,21 +117,29 @@ void EmitMap(const Node& map, std::size_t indent, std::string& out) {
 
 }  // namespace
 
-void Writer::Number(const char* key, double value, const Range&) {
+void Writer::Number(const char* key, double value, const Range&, const char* /*meaning*/) {
   Add(key, *Scalar(ShortestDecimal(value)));
 }
-void Writer::Integer(const char* key, int value, const Range&) { Add(key, *Scalar(std::to_string(value))); }
-void Writer::Flag(const char* key, bool value) { Add(key, *Scalar(value ? "true" : "false")); }
-void Writer::Text(const char* key, const std::string& value) { Add(key, *Scalar(value, !IsPlain(value))); }
+void Writer::Integer(const char* key, int value, const Range&, const char* /*meaning*/) {
+  Add(key, *Scalar(std::to_string(value)));
+}
+void Writer::Flag(const char* key, bool value, const char* /*meaning*/) {
+  Add(key, *Scalar(value ? "true" : "false"));
+}
+void Writer::Text(const char* key, const std::string& value, const char* /*meaning*/) {
+  Add(key, *Scalar(value, !IsPlain(value)));
+}
 
-void Writer::Numbers(const char* key, const std::vector<double>& values, const Range&) {
+void Writer::Numbers(const char* key, const std::vector<double>& values, const Range&,
+                     const char* /*meaning*/) {
   Node list;
   list.kind = Node::Kind::kList;
   for (const double value : values) list.items.push_back(Scalar(ShortestDecimal(value)));
   Add(key, std::move(list));
 }
 
-void Writer::Integers(const char* key, const std::vector<int>& values, const Range&) {
+void Writer::Integers(const char* key, const std::vector<int>& values, const Range&,
+                      const char* /*meaning*/) {
   Node list;
   list.kind = Node::Kind::kList;
   for (const int value : values) list.items.push_back(Scalar(std::to_string(value)));

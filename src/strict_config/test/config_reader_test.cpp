@@ -42,10 +42,11 @@ struct Coupler {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Choice("kind", kind, {{"draft_gear", CouplerKind::kDraftGear}, {"draw_bar", CouplerKind::kDrawBar}});
-    v.Number("slack_m", slack_m, kNonNegative);
-    v.Number("preload_n", preload_n, kNonNegative);
-    v.Numbers("stiffness_n_per_m", stiffness_n_per_m, kPositive);
+    v.Choice("kind", kind, {{"draft_gear", CouplerKind::kDraftGear}, {"draw_bar", CouplerKind::kDrawBar}},
+             "of the test");
+    v.Number("slack_m", slack_m, kNonNegative, "of the test");
+    v.Number("preload_n", preload_n, kNonNegative, "of the test");
+    v.Numbers("stiffness_n_per_m", stiffness_n_per_m, kPositive, "of the test");
     v.Check(slack_m < 1.0, "slack_m", "must be less than the length of a vehicle");
   }
 };
@@ -55,7 +56,7 @@ struct Contact {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("friction_coefficient", friction_coefficient, kFraction);
+    v.Number("friction_coefficient", friction_coefficient, kFraction, "of the test");
   }
 };
 
@@ -67,10 +68,10 @@ struct Vehicle {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Number("mass_kg", mass_kg, kPositive);
-    v.Group("contact", contact);
-    v.Part("coupler", coupler, "couplers");
+    v.Text("name", name, "of the test");
+    v.Number("mass_kg", mass_kg, kPositive, "of the test");
+    v.Group("contact", contact, "of the test");
+    v.Part("coupler", coupler, "couplers", "of the test");
   }
 };
 
@@ -80,8 +81,8 @@ struct ConsistEntry {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Integer("count", count, Range{1.0, 1000.0, false, false});
-    v.Part("vehicle", vehicle, "vehicles");
+    v.Integer("count", count, Range{1.0, 1000.0, false, false}, "of the test");
+    v.Part("vehicle", vehicle, "vehicles", "of the test");
   }
 };
 
@@ -91,8 +92,8 @@ struct Command {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
-    v.Number("reduction_kpa", reduction_kpa, kNonNegative);
+    v.Number("time_s", time_s, kNonNegative, "of the test");
+    v.Number("reduction_kpa", reduction_kpa, kNonNegative, "of the test");
   }
 };
 
@@ -108,14 +109,14 @@ struct Scenario {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("initial_speed_kmh", initial_speed_kmh, kNonNegative);
-    v.Flag("record", record);
-    v.Integers("detailed", detailed, kNonNegative);
-    v.List("consist", consist);
-    v.List("commands", commands);
-    v.Parts("spare_couplers", spare_couplers, "couplers");
-    v.Group("patch", patch);
-    v.Part("tail", tail, "couplers");
+    v.Number("initial_speed_kmh", initial_speed_kmh, kNonNegative, "of the test");
+    v.Flag("record", record, "of the test");
+    v.Integers("detailed", detailed, kNonNegative, "of the test");
+    v.List("consist", consist, "of the test");
+    v.List("commands", commands, "of the test");
+    v.Parts("spare_couplers", spare_couplers, "couplers", "of the test");
+    v.Group("patch", patch, "of the test");
+    v.Part("tail", tail, "couplers", "of the test");
   }
 };
 
@@ -125,7 +126,7 @@ struct Stages {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Integer("stages", stages, kPositive);
+    v.Integer("stages", stages, kPositive, "of the test");
   }
 };
 
@@ -136,8 +137,8 @@ struct Assembly {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("mass_kg", mass_kg, kNonNegative);
-    v.Parts("parts", parts, "assemblies");
+    v.Number("mass_kg", mass_kg, kNonNegative, "of the test");
+    v.Parts("parts", parts, "assemblies", "of the test");
   }
 };
 

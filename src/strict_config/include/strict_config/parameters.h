@@ -12,12 +12,14 @@
 ///
 ///     template <class Visitor>
 ///     void Visit(Visitor& v) {
-///       v.Number("wheel_radius_m", wheel_radius_m, kPositive);
+///       v.Number("wheel_radius_m", wheel_radius_m, kPositive, "r, radius of the wheels");
 ///       v.Check(inner <= outer, "inner_m", "must be at most outer_m");
 ///     }
 ///
-/// and that one list serves the strict reader, the writer of resolved configurations and the validator:
-/// a field's name, its key in YAML and the word in its error message are the same. Visitors offer
+/// and that one list serves the strict reader, the writer of resolved configurations, the validator and the
+/// reference of all keys: a field's name, its key in YAML and the word in its error message are the same. Each
+/// call ends with the key's meaning: its symbol, what it is, its sign, its source; the unit is in the key. Visitors
+/// offer (the meaning left out)
 ///
 ///   Number(key, double&, Range)                 Integer(key, int&, Range)        Flag(key, bool&)
 ///   Text(key, std::string&)                     Choice(key, Enum&, {{"name", Enum::kName}, ...})

@@ -66,13 +66,13 @@ struct ReadSession {
 /// The visitor that fills a struct from one map of a document.
 class Reader {
  public:
-  void Number(const char* key, double& value, const Range& range);
-  void Number(const char* key, std::optional<double>& value, const Range& range);
-  void Integer(const char* key, int& value, const Range& range);
-  void Flag(const char* key, bool& value);
-  void Text(const char* key, std::string& value);
-  void Numbers(const char* key, std::vector<double>& values, const Range& range);
-  void Integers(const char* key, std::vector<int>& values, const Range& range);
+  void Number(const char* key, double& value, const Range& range, const char* /*meaning*/);
+  void Number(const char* key, std::optional<double>& value, const Range& range, const char* /*meaning*/);
+  void Integer(const char* key, int& value, const Range& range, const char* /*meaning*/);
+  void Flag(const char* key, bool& value, const char* /*meaning*/);
+  void Text(const char* key, std::string& value, const char* /*meaning*/);
+  void Numbers(const char* key, std::vector<double>& values, const Range& range, const char* /*meaning*/);
+  void Integers(const char* key, std::vector<int>& values, const Range& range, const char* /*meaning*/);
   void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
 
   /// The folder from which a file that was given under this key counts: that of the file in which it is
@@ -88,13 +88,13 @@ class Reader {
   const std::set<std::string>& Ambiguities() const { return session_.library.Ambiguities(); }
 
   template <class Enum>
-  void Choice(const char* key, Enum& value, Choices<Enum> choices) {
+  void Choice(const char* key, Enum& value, Choices<Enum> choices, const char* /*meaning*/) {
     std::optional<Enum> given;
-    Choice(key, given, choices);
+    Choice(key, given, choices, nullptr);
     if (given) value = *given;
   }
   template <class Enum>
-  void Choice(const char* key, std::optional<Enum>& value, Choices<Enum> choices) {
+  void Choice(const char* key, std::optional<Enum>& value, Choices<Enum> choices, const char* /*meaning*/) {
     std::vector<std::string> names;
     for (const auto& choice : choices) names.push_back(choice.first);
     if (const std::optional<std::size_t> index = ReadChoice(key, names))
@@ -102,16 +102,16 @@ class Reader {
   }
 
   template <class Struct>
-  void Group(const char* key, Struct& value) {
+  void Group(const char* key, Struct& value, const char* /*meaning*/) {
     ReadStruct(FindGroup(key, Absent::kReadAsEmpty), value);
   }
   template <class Struct>
-  void Group(const char* key, std::optional<Struct>& value) {
+  void Group(const char* key, std::optional<Struct>& value, const char* /*meaning*/) {
     ReadOptional(FindGroup(key, Absent::kSkip), value);
   }
 
   template <class Struct>
-  void Part(const char* key, Struct& value, const char* kind) {
+  void Part(const char* key, Struct& value, const char* kind, const char* /*meaning*/) {
     const Place place = FindPart(key, kind, TableKey<Struct>(0));
     if (place.state == Place::State::kAbsent) {
       // One error for a part that has to be given says more than one for each of its fields.
@@ -121,16 +121,16 @@ class Reader {
     }
   }
   template <class Struct>
-  void Part(const char* key, std::optional<Struct>& value, const char* kind) {
+  void Part(const char* key, std::optional<Struct>& value, const char* kind, const char* /*meaning*/) {
     ReadOptional(FindPart(key, kind, TableKey<Struct>(0)), value);
   }
 
   template <class Struct>
-  void List(const char* key, std::vector<Struct>& values) {
+  void List(const char* key, std::vector<Struct>& values, const char* /*meaning*/) {
     ReadList(FindList(key, nullptr), values);
   }
   template <class Struct>
-  void Parts(const char* key, std::vector<Struct>& values, const char* kind) {
+  void Parts(const char* key, std::vector<Struct>& values, const char* kind, const char* /*meaning*/) {
     ReadList(FindList(key, kind), values);
   }
 

@@ -13,50 +13,52 @@ namespace strict_config {
 /// order.
 class Validator {
  public:
-  void Number(const char* key, double value, const Range& range);
-  void Number(const char* key, const std::optional<double>& value, const Range& range) {
-    if (value) Number(key, *value, range);
+  void Number(const char* key, double value, const Range& range, const char* /*meaning*/);
+  void Number(const char* key, const std::optional<double>& value, const Range& range,
+              const char* /*meaning*/) {
+    if (value) Number(key, *value, range, nullptr);
   }
-  void Integer(const char* key, int value, const Range& range);
-  void Flag(const char*, bool) {}
-  void Text(const char*, const std::string&) {}
-  void Numbers(const char* key, const std::vector<double>& values, const Range& range);
-  void Integers(const char* key, const std::vector<int>& values, const Range& range);
+  void Integer(const char* key, int value, const Range& range, const char* /*meaning*/);
+  void Flag(const char*, bool, const char* /*meaning*/) {}
+  void Text(const char*, const std::string&, const char* /*meaning*/) {}
+  void Numbers(const char* key, const std::vector<double>& values, const Range& range,
+               const char* /*meaning*/);
+  void Integers(const char* key, const std::vector<int>& values, const Range& range, const char* /*meaning*/);
   void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
 
   template <class Enum>
-  void Choice(const char* key, Enum value, Choices<Enum> choices) {
+  void Choice(const char* key, Enum value, Choices<Enum> choices, const char* /*meaning*/) {
     for (const auto& choice : choices) {
       if (choice.second == value) return;
     }
     Report(key, "must be one of its named values");
   }
   template <class Enum>
-  void Choice(const char* key, std::optional<Enum> value, Choices<Enum> choices) {
-    if (value) Choice(key, *value, choices);
+  void Choice(const char* key, std::optional<Enum> value, Choices<Enum> choices, const char* /*meaning*/) {
+    if (value) Choice(key, *value, choices, nullptr);
   }
 
   template <class Struct>
-  void Group(const char* key, Struct& value) {
+  void Group(const char* key, Struct& value, const char* /*meaning*/) {
     VisitNested(key, value);
   }
   template <class Struct>
-  void Group(const char* key, std::optional<Struct>& value) {
+  void Group(const char* key, std::optional<Struct>& value, const char* /*meaning*/) {
     if (value) VisitNested(key, *value);
   }
   template <class Value>
-  void Part(const char* key, Value& value, const char* /*kind*/) {
-    Group(key, value);
+  void Part(const char* key, Value& value, const char* /*kind*/, const char* /*meaning*/) {
+    Group(key, value, nullptr);
   }
   template <class Struct>
-  void List(const char* key, std::vector<Struct>& values) {
+  void List(const char* key, std::vector<Struct>& values, const char* /*meaning*/) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       VisitNested(key + ("[" + std::to_string(i) + "]"), values[i]);
     }
   }
   template <class Struct>
-  void Parts(const char* key, std::vector<Struct>& values, const char* /*kind*/) {
-    List(key, values);
+  void Parts(const char* key, std::vector<Struct>& values, const char* /*kind*/, const char* /*meaning*/) {
+    List(key, values, nullptr);
   }
 
   const std::vector<std::string>& errors() const { return errors_; }

@@ -16,17 +16,21 @@ namespace train_dynamics {
 ///
 /// All lists have the same length; between the measured reductions each quantity follows a monotone cubic.
 struct ServiceApplicationParams {
-  std::vector<double> reduction_kpa;          ///< of the brake pipe, ascending
-  std::vector<double> cylinder_pressure_kpa;  ///< p_s, steady
+  std::vector<double> reduction_kpa;
+  std::vector<double> cylinder_pressure_kpa;
   std::vector<double> wave_speed_mps;
-  std::vector<double> rise_rate_per_s;  ///< beta
+  std::vector<double> rise_rate_per_s;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("reduction_kpa", reduction_kpa, kPositive);
-    v.Numbers("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative);
-    v.Numbers("wave_speed_mps", wave_speed_mps, kPositive);
-    v.Numbers("rise_rate_per_s", rise_rate_per_s, kPositive);
+    v.Numbers(
+        "reduction_kpa", reduction_kpa, kPositive,
+        "total reductions of the brake pipe's pressure at which the application was measured, ascending");
+    v.Numbers("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative,
+              "p_s, steady cylinder pressure at each of them");
+    v.Numbers("wave_speed_mps", wave_speed_mps, kPositive, "speed of the brake wave at each of them");
+    v.Numbers("rise_rate_per_s", rise_rate_per_s, kPositive,
+              "beta, rate at which the cylinder pressure nears its steady value, at each of them");
     v.Check(reduction_kpa.size() >= 4, "reduction_kpa", "must list at least 4 reductions");
     for (std::size_t i = 1; i < reduction_kpa.size(); ++i) {
       v.Check(reduction_kpa[i] > reduction_kpa[i - 1], "reduction_kpa[" + std::to_string(i) + "]",
@@ -50,16 +54,21 @@ struct EmergencyApplicationParams {
   double rise_rate_per_s = kRequired;
   double rise_rate_fall_per_s = 0.0;
   double rise_rate_fall_length_m = 1.0;
-  double blocking_time_s = 60.0;  ///< for which nothing ends an emergency; afterwards a release does
+  double blocking_time_s = 60.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative);
-    v.Number("wave_speed_mps", wave_speed_mps, kPositive);
-    v.Number("rise_rate_per_s", rise_rate_per_s, kPositive);
-    v.Number("rise_rate_fall_per_s", rise_rate_fall_per_s, kNonNegative);
-    v.Number("rise_rate_fall_length_m", rise_rate_fall_length_m, kPositive);
-    v.Number("blocking_time_s", blocking_time_s, kNonNegative);
+    v.Number("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative,
+             "steady cylinder pressure of an emergency");
+    v.Number("wave_speed_mps", wave_speed_mps, kPositive, "speed of the emergency's wave along the train");
+    v.Number("rise_rate_per_s", rise_rate_per_s, kPositive,
+             "b0, rate at which the cylinder pressure nears its steady value beside the source that vents");
+    v.Number("rise_rate_fall_per_s", rise_rate_fall_per_s, kNonNegative,
+             "fall of that rate over rise_rate_fall_length_m of distance from the source");
+    v.Number("rise_rate_fall_length_m", rise_rate_fall_length_m, kPositive,
+             "L, distance up to which the rate falls evenly");
+    v.Number("blocking_time_s", blocking_time_s, kNonNegative,
+             "time for which nothing ends an emergency; afterwards a release does");
     v.Check(rise_rate_fall_per_s < rise_rate_per_s, "rise_rate_fall_per_s", "must be below rise_rate_per_s",
             {"rise_rate_per_s"});
   }
@@ -76,12 +85,13 @@ double EmergencyRiseRate(const EmergencyApplicationParams& params, double distan
 
 struct ReleaseParams {
   double wave_speed_mps = kRequired;
-  double fall_rate_per_s = kRequired;  ///< beta_r
+  double fall_rate_per_s = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("wave_speed_mps", wave_speed_mps, kPositive);
-    v.Number("fall_rate_per_s", fall_rate_per_s, kPositive);
+    v.Number("wave_speed_mps", wave_speed_mps, kPositive, "speed of the release's wave along the train");
+    v.Number("fall_rate_per_s", fall_rate_per_s, kPositive,
+             "beta_r, rate at which the cylinder pressure falls");
   }
 };
 
@@ -89,18 +99,23 @@ struct ReleaseParams {
 /// device.
 struct BrakeSourceParams {
   std::string name;
-  int vehicle = 0;                   ///< 1 = the first; -1 = the last, whatever the train's length
-  double application_delay_s = 0.0;  ///< from the driver's command to the venting of the pipe here
-  bool releases = true;              ///< false: an End-of-Train device, which only vents
-  double release_delay_s = 0.0;      ///< from the driver's command to the charging of the pipe here
+  int vehicle = 0;
+  double application_delay_s = 0.0;
+  bool releases = true;
+  double release_delay_s = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false});
-    v.Number("application_delay_s", application_delay_s, kNonNegative);
-    v.Flag("releases", releases);
-    if (releases) v.Number("release_delay_s", release_delay_s, kNonNegative);
+    v.Text("name", name, "name of the source, for people");
+    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false},
+              "vehicle that has the source: 1 the first, -1 the last");
+    v.Number("application_delay_s", application_delay_s, kNonNegative,
+             "from the driver's command to the venting of the pipe here");
+    v.Flag("releases", releases,
+           "whether it also charges the pipe; false: an end-of-train device, which only vents");
+    if (releases)
+      v.Number("release_delay_s", release_delay_s, kNonNegative,
+               "from the driver's command to the charging of the pipe here");
     v.Check(vehicle != 0, "vehicle", "must count from 1, or from -1 for the last");
   }
 };
@@ -111,16 +126,18 @@ struct AirBrakeParams {
   ServiceApplicationParams service;
   EmergencyApplicationParams emergency;
   ReleaseParams release;
-  /// Whether a smaller total reduction lets the cylinders down to its pressure; else it releases them fully.
   bool graduated_release = false;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.List("sources", sources);
-    v.Group("service", service);
-    v.Group("emergency", emergency);
-    v.Group("release", release);
-    v.Flag("graduated_release", graduated_release);
+    v.List("sources", sources,
+           "places where the pipe is vented and charged: locomotives and end-of-train devices");
+    v.Group("service", service, "measured service applications over the pipe's reduction");
+    v.Group("emergency", emergency, "emergency application");
+    v.Group("release", release, "release");
+    v.Flag("graduated_release", graduated_release,
+           "whether a smaller total reduction lets the cylinders down to its pressure; else it releases them "
+           "fully");
     v.Check(!sources.empty(), "sources", "must list at least one source");
     v.Check(sources.size() <= 100, "sources", "must list at most 100 sources");
   }

@@ -10,16 +10,18 @@ enum class BrakeCommandKind { kApply, kEmergency, kRelease };
 struct BrakeCommand {
   double time_s = kRequired;
   BrakeCommandKind kind = BrakeCommandKind::kApply;
-  double reduction_kpa = kRequired;  ///< of the pipe in total, for kApply only
+  double reduction_kpa = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
+    v.Number("time_s", time_s, kNonNegative, "when the command is given");
     v.Choice("kind", kind,
              {{"apply", BrakeCommandKind::kApply},
               {"emergency", BrakeCommandKind::kEmergency},
-              {"release", BrakeCommandKind::kRelease}});
-    if (kind == BrakeCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
+              {"release", BrakeCommandKind::kRelease}},
+             "apply, emergency or release");
+    if (kind == BrakeCommandKind::kApply)
+      v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
   }
 };
 

@@ -26,24 +26,27 @@ enum class ShoeFrictionLaw {
 /// Friction over speed at one shoe force.
 struct ShoeFrictionCurveParams {
   double shoe_load_kn = kRequired;
-  std::vector<double> friction_coefficient;  ///< [speed of the table]
+  std::vector<double> friction_coefficient;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("shoe_load_kn", shoe_load_kn, kPositive);
-    v.Numbers("friction_coefficient", friction_coefficient, kNonNegative);
+    v.Number("shoe_load_kn", shoe_load_kn, kPositive, "force of one shoe of this curve");
+    v.Numbers("friction_coefficient", friction_coefficient, kNonNegative,
+              "friction at each speed of the table");
   }
 };
 
 /// Friction over speed and shoe force, linear in both between points; beyond the first and the last, their values.
 struct ShoeFrictionTableParams {
   std::vector<double> speed_kmh;
-  std::vector<ShoeFrictionCurveParams> curves;  ///< by ascending shoe force
+  std::vector<ShoeFrictionCurveParams> curves;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("speed_kmh", speed_kmh, kNonNegative);
-    v.List("curves", curves);
+    v.Numbers("speed_kmh", speed_kmh, kNonNegative, "speeds of the table, ascending");
+    v.List("curves", curves,
+           "friction over speed, one curve for each shoe force, by ascending force; linear between, beyond "
+           "the last ones constant");
     v.Check(!speed_kmh.empty(), "speed_kmh", "must list the speeds of the table");
     v.Check(IsAscending(speed_kmh), "speed_kmh", "must ascend");
     v.Check(!curves.empty(), "curves", "must list at least one curve");
@@ -59,12 +62,12 @@ struct ShoeFrictionTableParams {
 
 /// Coefficient of friction between brake shoe and wheel tread.
 struct ShoeFrictionParams {
-  double standstill_friction_coefficient = kRequired;  ///< mu_0 of eq3, at v = 0
-  double reference_speed_kmh = kRequired;              ///< V of eq3
+  double standstill_friction_coefficient = kRequired;
+  double reference_speed_kmh = kRequired;
   ShoeFrictionLaw law = ShoeFrictionLaw::kEq3;
-  double shoe_temperature_c = 20.0;  ///< of the law tos; constant: shoes do not warm up yet
+  double shoe_temperature_c = 20.0;
   ShoeFrictionTableParams table;
-  double wet_factor = 1.0;  ///< on every law: 1 dry; wet composition shoes 0.8 [A]
+  double wet_factor = 1.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -73,14 +76,21 @@ struct ShoeFrictionParams {
               {"composition", ShoeFrictionLaw::kComposition},
               {"cast_iron", ShoeFrictionLaw::kCastIron},
               {"tos", ShoeFrictionLaw::kTos},
-              {"table", ShoeFrictionLaw::kTable}});
+              {"table", ShoeFrictionLaw::kTable}},
+             "eq3: mu_0 (k + V) / (2 k + V) (paper Eq 3); composition, cast_iron: Russian traction rules "
+             "[M]; tos: AAR R-269 [S]; table");
     if (law == ShoeFrictionLaw::kEq3) {
-      v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive);
-      v.Number("reference_speed_kmh", reference_speed_kmh, kPositive);
+      v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive,
+               "mu_0, at standstill");
+      v.Number("reference_speed_kmh", reference_speed_kmh, kPositive, "V");
     }
-    if (law == ShoeFrictionLaw::kTos) v.Number("shoe_temperature_c", shoe_temperature_c, Range{-60.0, 600.0});
-    if (law == ShoeFrictionLaw::kTable) v.Group("table", table);
-    v.Number("wet_factor", wet_factor, Range{0.0, 1.0, true, false});
+    if (law == ShoeFrictionLaw::kTos)
+      v.Number("shoe_temperature_c", shoe_temperature_c, Range{-60.0, 600.0},
+               "temperature of the shoes; constant: shoes do not warm up");
+    if (law == ShoeFrictionLaw::kTable)
+      v.Group("table", table, "measured friction over speed and shoe force");
+    v.Number("wet_factor", wet_factor, Range{0.0, 1.0, true, false},
+             "factor on the friction of every law: 1 dry; wet composition shoes 0.8 [A]");
   }
 };
 
@@ -157,18 +167,20 @@ enum class ShoeLoadForm {
 
 /// Brake cylinder and levers. All of the vehicle's cylinders are one.
 struct BrakeCylinderParams {
-  double piston_area_m2 = kRequired;  ///< A
-  double return_spring_n = 0.0;       ///< F_spring
-  double leverage_ratio = kRequired;  ///< i, shoes' force over the piston's
-  std::optional<double>
-      efficiency;  ///< eta; not given: sqrt(ln(p - 6)) / 3.2, p in psi, that of 10 psi below (TOS) [S]
+  double piston_area_m2 = kRequired;
+  double return_spring_n = 0.0;
+  double leverage_ratio = kRequired;
+  std::optional<double> efficiency;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("piston_area_m2", piston_area_m2, kPositive);
-    v.Number("return_spring_n", return_spring_n, kNonNegative);
-    v.Number("leverage_ratio", leverage_ratio, kPositive);
-    v.Number("efficiency", efficiency, Range{0.0, 1.0, true, false});
+    v.Number("piston_area_m2", piston_area_m2, kPositive, "A, area of all pistons of the vehicle together");
+    v.Number("return_spring_n", return_spring_n, kNonNegative,
+             "F_spring, force that the pressure must overcome first");
+    v.Number("leverage_ratio", leverage_ratio, kPositive, "i, force of all shoes over that of the piston");
+    v.Number(
+        "efficiency", efficiency, Range{0.0, 1.0, true, false},
+        "eta of the rigging; not given: sqrt(ln(p - 6)) / 3.2, p in psi, that of 10 psi below (TOS) [S]");
   }
 };
 
@@ -180,8 +192,10 @@ struct NetBrakingRatioParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("ratio", ratio, Range{0.0, 2.0, false, false});
-    v.Number("at_pressure_kpa", at_pressure_kpa, kPositive);
+    v.Number("ratio", ratio, Range{0.0, 2.0, false, false},
+             "load of all shoes over the vehicle's weight: 0.11 of loaded, 0.25 of empty wagons at full "
+             "service (AAR) [S]");
+    v.Number("at_pressure_kpa", at_pressure_kpa, kPositive, "cylinder pressure at which it is reached");
   }
 };
 
@@ -193,21 +207,27 @@ enum class LoadSensingKind {
 /// A brake that is weaker where the vehicle is not full.
 struct LoadSensingParams {
   LoadSensingKind kind = LoadSensingKind::kProportional;
-  double full_mass_kg = kRequired;  ///< of the vehicle for which the full load of the shoes is meant
-  double least_share = 0.3;         ///< [A]
+  double full_mass_kg = kRequired;
+  double least_share = 0.3;
   double changeover_mass_kg = kRequired;
-  double empty_share = 0.5;  ///< 0.35 to 0.60 [S]
+  double empty_share = 0.5;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Choice("kind", kind,
-             {{"proportional", LoadSensingKind::kProportional}, {"two_step", LoadSensingKind::kTwoStep}});
+             {{"proportional", LoadSensingKind::kProportional}, {"two_step", LoadSensingKind::kTwoStep}},
+             "proportional: share = mass / full_mass_kg; two_step: empty_share below the change-over mass, "
+             "else 1");
     if (kind == LoadSensingKind::kProportional) {
-      v.Number("full_mass_kg", full_mass_kg, kPositive);
-      v.Number("least_share", least_share, kFraction);
+      v.Number("full_mass_kg", full_mass_kg, kPositive,
+               "mass of the vehicle for which the full load of the shoes is meant");
+      v.Number("least_share", least_share, kFraction,
+               "share of the full load of the shoes that is always there [A]");
     } else {
-      v.Number("changeover_mass_kg", changeover_mass_kg, kPositive);
-      v.Number("empty_share", empty_share, kFraction);
+      v.Number("changeover_mass_kg", changeover_mass_kg, kPositive,
+               "mass of the vehicle below which empty_share holds");
+      v.Number("empty_share", empty_share, kFraction,
+               "share of the full load of the shoes when empty: 0.35 to 0.60 [S]");
     }
   }
 
@@ -220,44 +240,55 @@ struct LoadSensingParams {
 
 /// Brake rigging of a vehicle: from cylinder pressure to the shoes' tangential force.
 struct BrakeRiggingParams {
-  double shoe_load_per_pressure_n_per_pa = kRequired;  ///< C, normal load of all shoes per cylinder pressure
+  double shoe_load_per_pressure_n_per_pa = kRequired;
   ShoeFrictionParams shoe_friction;
   BrakeReaction reaction = BrakeReaction::kFrame;
   FrictionSpeed friction_speed = FrictionSpeed::kTread;
   ShoeLoadForm shoe_load = ShoeLoadForm::kPerPressure;
   BrakeCylinderParams cylinder;
   NetBrakingRatioParams net_braking_ratio;
-  int shoes = 8;  ///< of the vehicle; they share the load
+  int shoes = 8;
   std::optional<LoadSensingParams> load_sensing;
-  bool cut_out = false;  ///< the vehicle's air brake does not act
-  double hand_brake_ratio =
-      0.0;  ///< friction force of the hand brake over the weight; 0: released; 0.02 to 0.1 applied
+  bool cut_out = false;
+  double hand_brake_ratio = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Choice("shoe_load", shoe_load,
              {{"per_pressure", ShoeLoadForm::kPerPressure},
               {"cylinder", ShoeLoadForm::kCylinder},
-              {"net_braking_ratio", ShoeLoadForm::kNetBrakingRatio}});
+              {"net_braking_ratio", ShoeLoadForm::kNetBrakingRatio}},
+             "how the shoes' load follows from the pressure: per_pressure: C p; cylinder: max(0, p A - "
+             "F_spring) i eta; net_braking_ratio: a share of the weight");
     if (shoe_load == ShoeLoadForm::kPerPressure)
-      v.Number("shoe_load_per_pressure_n_per_pa", shoe_load_per_pressure_n_per_pa, kNonNegative);
-    if (shoe_load == ShoeLoadForm::kCylinder) v.Group("cylinder", cylinder);
-    if (shoe_load == ShoeLoadForm::kNetBrakingRatio) v.Group("net_braking_ratio", net_braking_ratio);
-    v.Integer("shoes", shoes, Range{1, 48, false, false});
-    v.Group("load_sensing", load_sensing);
+      v.Number("shoe_load_per_pressure_n_per_pa", shoe_load_per_pressure_n_per_pa, kNonNegative,
+               "C, load of all shoes of the vehicle per cylinder pressure");
+    if (shoe_load == ShoeLoadForm::kCylinder)
+      v.Group("cylinder", cylinder, "brake cylinder and levers; all of the vehicle's cylinders are one");
+    if (shoe_load == ShoeLoadForm::kNetBrakingRatio)
+      v.Group("net_braking_ratio", net_braking_ratio,
+              "load of all shoes over the vehicle's weight at a cylinder pressure");
+    v.Integer("shoes", shoes, Range{1, 48, false, false},
+              "number of shoes of the vehicle, which share the load");
+    v.Group("load_sensing", load_sensing, "makes the brake weaker where the vehicle is not full");
     v.Check(
         !load_sensing || shoe_load != ShoeLoadForm::kNetBrakingRatio, "load_sensing",
         "must not be given with shoe_load net_braking_ratio, which is that of the vehicle as it is loaded",
         {"shoe_load"});
-    v.Flag("cut_out", cut_out);
-    v.Number("hand_brake_ratio", hand_brake_ratio, Range{0.0, 0.3, false, false});
-    v.Group("shoe_friction", shoe_friction);
+    v.Flag("cut_out", cut_out, "the vehicle's air brake does not act");
+    v.Number("hand_brake_ratio", hand_brake_ratio, Range{0.0, 0.3, false, false},
+             "friction force of the hand brake over the weight; 0: released; 0.02 to 0.1 applied");
+    v.Group("shoe_friction", shoe_friction, "friction between shoe and tread");
     v.Choice("reaction", reaction,
              {{"frame", BrakeReaction::kFrame},
               {"carbody", BrakeReaction::kCarbody},
-              {"none", BrakeReaction::kNone}});
-    v.Choice("friction_speed", friction_speed,
-             {{"tread", FrictionSpeed::kTread}, {"vehicle", FrictionSpeed::kVehicle}});
+              {"none", BrakeReaction::kNone}},
+             "what holds the shoes: frame: each wheelset's bogie frame; carbody; none: the reaction is left "
+             "out (as in the paper)");
+    v.Choice(
+        "friction_speed", friction_speed,
+        {{"tread", FrictionSpeed::kTread}, {"vehicle", FrictionSpeed::kVehicle}},
+        "speed in the law of friction: tread: that of each wheelset's tread; vehicle: that of the carbody");
   }
 };
 

@@ -6,17 +6,20 @@ namespace train_dynamics {
 
 /// Elastic constants and lateral radii of wheel and rail at the contact point.
 struct HertzParams {
-  double youngs_modulus_pa = kRequired;       ///< of both bodies
-  double poisson_ratio = kRequired;           ///< of both bodies
-  double wheel_lateral_radius_m = kRequired;  ///< of the wheel profile; NEGATIVE = concave
-  double rail_lateral_radius_m = kRequired;   ///< of the rail head; positive = convex
+  double youngs_modulus_pa = kRequired;
+  double poisson_ratio = kRequired;
+  double wheel_lateral_radius_m = kRequired;
+  double rail_lateral_radius_m = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("youngs_modulus_pa", youngs_modulus_pa, kPositive);
-    v.Number("poisson_ratio", poisson_ratio, Range{0.0, 0.5, false, false});
-    v.Number("wheel_lateral_radius_m", wheel_lateral_radius_m, kFinite);
-    v.Number("rail_lateral_radius_m", rail_lateral_radius_m, kPositive);
+    v.Number("youngs_modulus_pa", youngs_modulus_pa, kPositive, "Young's modulus of wheel and rail");
+    v.Number("poisson_ratio", poisson_ratio, Range{0.0, 0.5, false, false},
+             "Poisson's ratio of wheel and rail");
+    v.Number("wheel_lateral_radius_m", wheel_lateral_radius_m, kFinite,
+             "lateral radius of the wheel profile at the contact; negative: concave");
+    v.Number("rail_lateral_radius_m", rail_lateral_radius_m, kPositive,
+             "lateral radius of the rail head at the contact; positive: convex");
     v.Check(wheel_lateral_radius_m != 0.0, "wheel_lateral_radius_m", "must not be 0",
             {"wheel_lateral_radius_m"});
     v.Check(wheel_lateral_radius_m == 0.0 || 1.0 / wheel_lateral_radius_m + 1.0 / rail_lateral_radius_m > 0.0,

@@ -12,8 +12,8 @@ struct NormalContactParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("stiffness_n_per_m", stiffness_n_per_m, kPositive);
-    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative);
+    v.Number("stiffness_n_per_m", stiffness_n_per_m, kPositive, "normal stiffness of one wheel on its rail");
+    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative, "normal damping of one wheel on its rail");
   }
 };
 

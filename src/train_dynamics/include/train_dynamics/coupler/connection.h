@@ -30,8 +30,6 @@ enum class ConnectionKind { kDraftGears, kDrawBar, kTable, kUnequalGears, kSideB
 struct ConnectionParams {
   std::string name;
   ConnectionKind kind = ConnectionKind::kDraftGears;
-  /// Tension beyond which the connection breaks: from then on it carries no tension, and the brake pipe is open there.
-  /// 0: it never does.
   double strength_n = 0.0;
   DraftGearParams draft_gear;
   DrawBarParams draw_bar;
@@ -41,19 +39,27 @@ struct ConnectionParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
+    v.Text("name", name, "name of the coupler, for people");
     v.Choice("kind", kind,
              {{"draft_gears", ConnectionKind::kDraftGears},
               {"draw_bar", ConnectionKind::kDrawBar},
               {"table", ConnectionKind::kTable},
               {"unequal_gears", ConnectionKind::kUnequalGears},
-              {"side_buffers", ConnectionKind::kSideBuffers}});
-    v.Number("strength_n", strength_n, kNonNegative);
-    if (kind == ConnectionKind::kDraftGears) v.Group("draft_gear", draft_gear);
-    if (kind == ConnectionKind::kDrawBar) v.Group("draw_bar", draw_bar);
-    if (kind == ConnectionKind::kTable) v.Group("table", table);
-    if (kind == ConnectionKind::kUnequalGears) v.Group("unequal_gears", unequal_gears);
-    if (kind == ConnectionKind::kSideBuffers) v.Group("side_buffers", side_buffers);
+              {"side_buffers", ConnectionKind::kSideBuffers}},
+             "draft_gears: two equal friction gears; draw_bar; table: measured force; unequal_gears: two "
+             "different gears; side_buffers: screw coupling with buffers");
+    v.Number("strength_n", strength_n, kNonNegative,
+             "tension beyond which the connection breaks: from then on it carries no tension and the brake "
+             "pipe is open there; 0: it never breaks");
+    if (kind == ConnectionKind::kDraftGears)
+      v.Group("draft_gear", draft_gear, "one of two equal friction draft gears in series");
+    if (kind == ConnectionKind::kDrawBar)
+      v.Group("draw_bar", draw_bar, "rigid bar: a linear spring and damper");
+    if (kind == ConnectionKind::kTable) v.Group("table", table, "measured force of the whole connection");
+    if (kind == ConnectionKind::kUnequalGears)
+      v.Group("unequal_gears", unequal_gears, "two different draft gears in series");
+    if (kind == ConnectionKind::kSideBuffers)
+      v.Group("side_buffers", side_buffers, "side buffers, draw gear and screw");
   }
 
   /// The law that these parameters describe.

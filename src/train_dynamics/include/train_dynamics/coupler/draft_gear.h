@@ -17,23 +17,23 @@ enum class DraftGearFriction {
 
 /// A friction draft gear, two equal ones of which stand in series with the slack of one coupler connection.
 struct DraftGearParams {
-  double slack_m = kRequired;                       ///< total free play of the connection
-  double preload_n = kRequired;                     ///< F_0
-  double preload_travel_m = 0.001;                  ///< travel over which the preload builds up
-  double spring_stiffness_n_per_m = kRequired;      ///< k_s of one gear
-  double spring_hardening_n_per_m3 = 0.0;           ///< k_3 of one gear
-  double travel_m = kRequired;                      ///< d_max of one gear
-  double solid_stiffness_n_per_m = kRequired;       ///< of the stop of one gear beyond d_max
-  double wedge_angle_deg = kRequired;               ///< phi
-  double static_friction_coefficient = kRequired;   ///< mu_s
-  double kinetic_friction_coefficient = kRequired;  ///< mu_k
-  double stribeck_speed_mps = kRequired;            ///< v_s, of one gear's travel; not damped_stick
+  double slack_m = kRequired;
+  double preload_n = kRequired;
+  double preload_travel_m = 0.001;
+  double spring_stiffness_n_per_m = kRequired;
+  double spring_hardening_n_per_m3 = 0.0;
+  double travel_m = kRequired;
+  double solid_stiffness_n_per_m = kRequired;
+  double wedge_angle_deg = kRequired;
+  double static_friction_coefficient = kRequired;
+  double kinetic_friction_coefficient = kRequired;
+  double stribeck_speed_mps = kRequired;
   DraftGearFriction friction = DraftGearFriction::kSmooth;
-  double smoothing_speed_mps = kRequired;       ///< v_e, of one gear's travel; smooth friction
-  double stick_stiffness_n_per_m = 1.0e9;       ///< of the connection while it sticks; stick_spring friction
-  double gear_stick_stiffness_n_per_m = 1.0e9;  ///< k_st of one gear while it sticks; damped_stick friction
-  double gear_stick_damping_ns_per_m = 2.6e6;   ///< c_st likewise
-  double friction_length_m = 0.105e-3;          ///< ell, of one gear's travel; lugre friction
+  double smoothing_speed_mps = kRequired;
+  double stick_stiffness_n_per_m = 1.0e9;
+  double gear_stick_stiffness_n_per_m = 1.0e9;
+  double gear_stick_damping_ns_per_m = 2.6e6;
+  double friction_length_m = 0.105e-3;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -41,26 +41,37 @@ struct DraftGearParams {
              {{"smooth", DraftGearFriction::kSmooth},
               {"stick_spring", DraftGearFriction::kStickSpring},
               {"damped_stick", DraftGearFriction::kDampedStick},
-              {"lugre", DraftGearFriction::kLuGre}});
+              {"lugre", DraftGearFriction::kLuGre}},
+             "smooth: a function of the present rate only; stick_spring: moves along a stiff spring between "
+             "the branches; damped_stick: likewise, damped, for real trains; lugre: a study");
     const bool damped_stick = friction == DraftGearFriction::kDampedStick;
     if (friction != DraftGearFriction::kSmooth) NotRequired(smoothing_speed_mps);
     if (damped_stick) NotRequired(stribeck_speed_mps);
-    v.Number("slack_m", slack_m, kNonNegative);
-    v.Number("preload_n", preload_n, kNonNegative);
-    v.Number("preload_travel_m", preload_travel_m, kPositive);
-    v.Number("spring_stiffness_n_per_m", spring_stiffness_n_per_m, kPositive);
-    v.Number("spring_hardening_n_per_m3", spring_hardening_n_per_m3, kNonNegative);
-    v.Number("travel_m", travel_m, kPositive);
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
-    v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0});
-    v.Number("static_friction_coefficient", static_friction_coefficient, kNonNegative);
-    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, kNonNegative);
-    v.Number("stribeck_speed_mps", stribeck_speed_mps, kPositive);
-    v.Number("smoothing_speed_mps", smoothing_speed_mps, kPositive);
-    v.Number("stick_stiffness_n_per_m", stick_stiffness_n_per_m, kPositive);
-    v.Number("gear_stick_stiffness_n_per_m", gear_stick_stiffness_n_per_m, kPositive);
-    v.Number("gear_stick_damping_ns_per_m", gear_stick_damping_ns_per_m, kNonNegative);
-    v.Number("friction_length_m", friction_length_m, kPositive);
+    v.Number("slack_m", slack_m, kNonNegative, "total free play of the connection");
+    v.Number("preload_n", preload_n, kNonNegative, "F_0, preload of one gear");
+    v.Number("preload_travel_m", preload_travel_m, kPositive, "travel over which the preload builds up");
+    v.Number("spring_stiffness_n_per_m", spring_stiffness_n_per_m, kPositive, "k_s of one gear");
+    v.Number("spring_hardening_n_per_m3", spring_hardening_n_per_m3, kNonNegative, "k_3 of one gear");
+    v.Number("travel_m", travel_m, kPositive, "d_max of one gear");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive,
+             "stiffness of the stop of one gear beyond d_max");
+    v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0}, "phi, angle of the wedge");
+    v.Number("static_friction_coefficient", static_friction_coefficient, kNonNegative, "mu_s, on the wedge");
+    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, kNonNegative,
+             "mu_k, on the wedge");
+    v.Number("stribeck_speed_mps", stribeck_speed_mps, kPositive,
+             "v_s, rate of one gear's travel over which friction falls from mu_s to mu_k; not of friction "
+             "damped_stick");
+    v.Number("smoothing_speed_mps", smoothing_speed_mps, kPositive,
+             "v_e, rate of one gear's travel over which friction changes its sign; friction smooth");
+    v.Number("stick_stiffness_n_per_m", stick_stiffness_n_per_m, kPositive,
+             "stiffness of the connection while it sticks; friction stick_spring");
+    v.Number("gear_stick_stiffness_n_per_m", gear_stick_stiffness_n_per_m, kPositive,
+             "k_st, stiffness of one gear while it sticks; friction damped_stick");
+    v.Number("gear_stick_damping_ns_per_m", gear_stick_damping_ns_per_m, kNonNegative,
+             "c_st, damping of one gear while it sticks; friction damped_stick");
+    v.Number("friction_length_m", friction_length_m, kPositive,
+             "ell, travel of one gear over which friction builds up; friction lugre");
     v.Check(kinetic_friction_coefficient <= static_friction_coefficient, "kinetic_friction_coefficient",
             "must be at most static_friction_coefficient");
     v.Check(static_friction_coefficient < TanWedge(), "static_friction_coefficient",

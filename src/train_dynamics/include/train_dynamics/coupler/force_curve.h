@@ -13,13 +13,14 @@ namespace train_dynamics {
 struct ForceCurveParams {
   static constexpr std::size_t kMostPoints = 32;
 
-  std::vector<double> travel_m;  ///< ascending, beyond the slack
-  std::vector<double> force_n;   ///< >= 0, not descending
+  std::vector<double> travel_m;
+  std::vector<double> force_n;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("travel_m", travel_m, kNonNegative);
-    v.Numbers("force_n", force_n, kNonNegative);
+    v.Numbers("travel_m", travel_m, kNonNegative,
+              "travels of the curve from the end of the slack on: 0 first, ascending, 2 to 32 points");
+    v.Numbers("force_n", force_n, kNonNegative, "force at each of them: 0 first, not descending");
     v.Check(travel_m.size() >= 2 && travel_m.size() <= kMostPoints, "travel_m", "must list 2 to 32 points");
     v.Check(travel_m.empty() || travel_m.front() == 0.0, "travel_m", "must start at 0, the end of the slack");
     v.Check(std::adjacent_find(travel_m.begin(), travel_m.end(), std::greater_equal<>()) == travel_m.end(),
@@ -42,8 +43,8 @@ struct HysteresisParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Group("loading", loading);
-    v.Group("unloading", unloading);
+    v.Group("loading", loading, "force over travel while it is loaded");
+    v.Group("unloading", unloading, "force over travel while it is unloaded, nowhere above loading");
     v.Check(loading.travel_m.empty() || unloading.travel_m.empty() ||
                 loading.travel_m.back() == unloading.travel_m.back(),
             "unloading.travel_m", "must end where loading.travel_m ends", {"loading", "unloading"});

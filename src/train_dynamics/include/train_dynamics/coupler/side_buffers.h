@@ -6,16 +6,18 @@ namespace train_dynamics {
 
 /// A spring of side buffers or of a draw hook, by tables of one of them.
 struct BufferSpringParams {
-  double locked_stiffness_n_per_m = kRequired;  ///< k of the stick line
-  double locked_damping_ns_per_m = 1.0e5;       ///< c while it sticks
-  double solid_stiffness_n_per_m = 1.0e8;       ///< beyond the last point
+  double locked_stiffness_n_per_m = kRequired;
+  double locked_damping_ns_per_m = 1.0e5;
+  double solid_stiffness_n_per_m = 1.0e8;
   HysteresisParams tables;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("locked_stiffness_n_per_m", locked_stiffness_n_per_m, kPositive);
-    v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative);
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
+    v.Number("locked_stiffness_n_per_m", locked_stiffness_n_per_m, kPositive,
+             "k of the line between the curves, while it sticks");
+    v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative, "c while it sticks");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive,
+             "stiffness beyond the last point");
     tables.Visit(v);
     v.Check(
         locked_stiffness_n_per_m > tables.SteepestSlope(), "locked_stiffness_n_per_m",
@@ -29,15 +31,16 @@ struct BufferSpringParams {
 
 /// Screw coupling with two side buffers at each end.
 struct SideBuffersParams {
-  double pretension_travel_m = 0.010;  ///< d_0: travel of each buffer at q = 0, by the tightened screw
-  BufferSpringParams buffer;           ///< one of four
-  BufferSpringParams draw_gear;        ///< both draw gears and the screw together
+  double pretension_travel_m = 0.010;
+  BufferSpringParams buffer;
+  BufferSpringParams draw_gear;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("pretension_travel_m", pretension_travel_m, kNonNegative);
-    v.Group("buffer", buffer);
-    v.Group("draw_gear", draw_gear);
+    v.Number("pretension_travel_m", pretension_travel_m, kNonNegative,
+             "d_0, travel of each buffer when nothing pulls, by the tightened screw");
+    v.Group("buffer", buffer, "one of the four buffers");
+    v.Group("draw_gear", draw_gear, "both draw gears and the screw together");
     v.Check(buffer.tables.loading.travel_m.empty() ||
                 pretension_travel_m <= buffer.tables.loading.travel_m.back(),
             "pretension_travel_m", "must lie within the travel of the buffers", {"buffer"});

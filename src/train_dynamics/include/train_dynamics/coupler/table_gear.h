@@ -9,23 +9,25 @@ namespace train_dynamics {
 
 /// A connection measured as tables of its force: friction, elastomer or end-of-car gears.
 struct TableGearParams {
-  double slack_m = 0.0;                         ///< total free play of the connection
-  double locked_stiffness_n_per_m = kRequired;  ///< k of the stick line
-  double locked_damping_ns_per_m = 1.3e6;       ///< c while it sticks
-  double damping_ns_per_m = 0.0;                ///< b, beyond the slack
-  double solid_stiffness_n_per_m = 1.0e8;       ///< beyond the last point
-  HysteresisParams tables;                      ///< of the whole connection, in tension and compression
-  std::optional<HysteresisParams> compression;  ///< where compression differs
+  double slack_m = 0.0;
+  double locked_stiffness_n_per_m = kRequired;
+  double locked_damping_ns_per_m = 1.3e6;
+  double damping_ns_per_m = 0.0;
+  double solid_stiffness_n_per_m = 1.0e8;
+  HysteresisParams tables;  ///< of the whole connection, in tension and compression
+  std::optional<HysteresisParams> compression;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("slack_m", slack_m, kNonNegative);
-    v.Number("locked_stiffness_n_per_m", locked_stiffness_n_per_m, kPositive);
-    v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative);
-    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative);
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
+    v.Number("slack_m", slack_m, kNonNegative, "total free play of the connection");
+    v.Number("locked_stiffness_n_per_m", locked_stiffness_n_per_m, kPositive,
+             "k of the line between the curves, while it sticks");
+    v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative, "c while it sticks");
+    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative, "b, of a damper beyond the slack");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive,
+             "stiffness beyond the last point");
     tables.Visit(v);
-    v.Group("compression", compression);
+    v.Group("compression", compression, "curves of compression; not given: those of tension");
     const double steepest =
         compression ? std::max(tables.SteepestSlope(), compression->SteepestSlope()) : tables.SteepestSlope();
     v.Check(locked_stiffness_n_per_m > steepest, "locked_stiffness_n_per_m",

@@ -14,19 +14,20 @@ struct OneGearParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Choice("kind", kind, {{"draft_gear", Kind::kFriction}, {"table", Kind::kTable}});
+    v.Choice("kind", kind, {{"draft_gear", Kind::kFriction}, {"table", Kind::kTable}},
+             "draft_gear: a friction gear; table: a measured gear");
     const char* const no_slack = "must be 0: the slack is that of the connection";
     if (kind == Kind::kFriction) {
       if (draft_gear.slack_m != draft_gear.slack_m) {  // nothing was read yet
         draft_gear.slack_m = 0.0;
         draft_gear.friction = DraftGearFriction::kDampedStick;
       }
-      v.Group("draft_gear", draft_gear);
+      v.Group("draft_gear", draft_gear, "the friction gear, with friction damped_stick and without slack");
       v.Check(draft_gear.slack_m == 0.0, "draft_gear.slack_m", no_slack);
       v.Check(draft_gear.friction == DraftGearFriction::kDampedStick, "draft_gear.friction",
               "must be damped_stick for one gear of two");
     } else {
-      v.Group("table", table);
+      v.Group("table", table, "the measured gear, without slack");
       v.Check(table.slack_m == 0.0, "table.slack_m", no_slack);
       v.Check(table.damping_ns_per_m == 0.0, "table.damping_ns_per_m", "must be 0 for one gear of two");
       v.Check(!table.compression, "table.compression",
@@ -37,14 +38,14 @@ struct OneGearParams {
 
 /// Two different draft gears in series.
 struct UnequalGearsParams {
-  double slack_m = kRequired;  ///< total free play of the connection
+  double slack_m = kRequired;
   OneGearParams front_gear, rear_gear;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("slack_m", slack_m, kNonNegative);
-    v.Group("front_gear", front_gear);
-    v.Group("rear_gear", rear_gear);
+    v.Number("slack_m", slack_m, kNonNegative, "total free play of the connection");
+    v.Group("front_gear", front_gear, "gear of the vehicle in front");
+    v.Group("rear_gear", rear_gear, "gear of the vehicle behind");
   }
 };
 

@@ -19,13 +19,15 @@ enum class CurvingResistanceLaw {
 /// Resistance over the radius of curves, linear between points; above the last radius it falls as 1/R, below the first it
 /// stays.
 struct CurvingTableParams {
-  std::vector<double> radius_m;            ///< ascending, > 0
-  std::vector<double> resistance_n_per_t;  ///< >= 0, not ascending
+  std::vector<double> radius_m;
+  std::vector<double> resistance_n_per_t;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("radius_m", radius_m, kPositive);
-    v.Numbers("resistance_n_per_t", resistance_n_per_t, kNonNegative);
+    v.Numbers("radius_m", radius_m, kPositive,
+              "radii of the table, ascending; beyond the last one the resistance falls as 1/R");
+    v.Numbers("resistance_n_per_t", resistance_n_per_t, kNonNegative,
+              "resistance at each of them, not ascending");
     v.Check(!radius_m.empty(), "radius_m", "must list the radii of the table");
     v.Check(IsAscending(radius_m), "radius_m", "must ascend");
     v.Check(resistance_n_per_t.size() == radius_m.size(), "resistance_n_per_t",
@@ -46,8 +48,9 @@ struct CurvingResistanceParams {
              {{"cole", CurvingResistanceLaw::kCole},
               {"area", CurvingResistanceLaw::kArea},
               {"roeckl", CurvingResistanceLaw::kRoeckl},
-              {"table", CurvingResistanceLaw::kTable}});
-    if (law == CurvingResistanceLaw::kTable) v.Group("table", table);
+              {"table", CurvingResistanceLaw::kTable}},
+             "cole: 6116 / R newtons per tonne [M]; area, roeckl: see the equations; table: measured");
+    if (law == CurvingResistanceLaw::kTable) v.Group("table", table, "measured resistance over radius");
   }
 };
 

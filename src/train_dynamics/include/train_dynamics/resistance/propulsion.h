@@ -26,40 +26,41 @@ enum class PropulsionResistanceLaw {
 /// r = 1.5 + 18 n / W + 0.03 V + C A V^2 / (10000 W)  in pounds per short ton; n axles, W short tons, V mph. [S]
 /// (AREMA Manual ch. 16, as in the manual of the Train Performance Simulator)
 struct CnResistanceParams {
-  double frontal_area_ft2 = kRequired;  ///< A
-  double drag_coefficient =
-      kRequired;  ///< C, of a vehicle within a train: 4.2 a loaded gondola, 24 a leading locomotive
+  double frontal_area_ft2 = kRequired;
+  double drag_coefficient = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("frontal_area_ft2", frontal_area_ft2, kPositive);
-    v.Number("drag_coefficient", drag_coefficient, kNonNegative);
+    v.Number("frontal_area_ft2", frontal_area_ft2, kPositive, "A, frontal area");
+    v.Number("drag_coefficient", drag_coefficient, kNonNegative,
+             "C, of a vehicle within a train: 4.2 a loaded gondola, 24 a leading locomotive");
   }
 };
 
 /// r = K_a (2.943 + 89.2 / m_a + 0.0306 k + 1.718 K_ad k^2 / (m_a n))  in newtons per tonne; m_a tonnes per axle. [M]
 struct ModifiedDavisParams {
-  double adjustment_factor = 0.85;  ///< K_a
-  double drag_factor = 0.07;        ///< K_ad
+  double adjustment_factor = 0.85;
+  double drag_factor = 0.07;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("adjustment_factor", adjustment_factor, kPositive);
-    v.Number("drag_factor", drag_factor, kNonNegative);
+    v.Number("adjustment_factor", adjustment_factor, kPositive, "K_a, factor on the whole resistance");
+    v.Number("drag_factor", drag_factor, kNonNegative, "K_ad, factor on the term with the speed squared");
   }
 };
 
 /// r = f0 + f2 ((k + w) / 100)^2  in newtons per kilonewton. [S] (Wende, Fahrdynamik des Schienenverkehrs, 2003, p. 153)
 struct StrahlParams {
-  double constant_n_per_kn = kRequired;   ///< f0: 1.4 of ore wagons, 2.2 of a V 90
-  double quadratic_n_per_kn = kRequired;  ///< f2: 3.9 of ore wagons, 10 of a V 90
-  double head_wind_kmh = 0.0;             ///< w: 15 for locomotives
+  double constant_n_per_kn = kRequired;
+  double quadratic_n_per_kn = kRequired;
+  double head_wind_kmh = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative);
-    v.Number("quadratic_n_per_kn", quadratic_n_per_kn, kNonNegative);
-    v.Number("head_wind_kmh", head_wind_kmh, kNonNegative);
+    v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative, "f0: 1.4 of ore wagons, 2.2 of a V 90");
+    v.Number("quadratic_n_per_kn", quadratic_n_per_kn, kNonNegative,
+             "f2 at 100 km/h: 3.9 of ore wagons, 10 of a V 90");
+    v.Number("head_wind_kmh", head_wind_kmh, kNonNegative, "w, added to the speed: 15 for locomotives");
   }
 };
 
@@ -68,9 +69,9 @@ struct StrahlParams {
 /// `szd` has none: with q0 tonnes per axle, 0.7 + (3 + 0.1 k + 0.0025 k^2) / q0 newtons per kilonewton above 6 t, else
 /// 1.0 + 0.044 k + 0.00024 k^2. [S] (maisvendoo/train, after the Russian traction rules)
 struct PropulsionResistanceParams {
-  double constant_n_per_kn = kRequired;        ///< a
-  double linear_n_per_kn_kmh = kRequired;      ///< b
-  double quadratic_n_per_kn_kmh2 = kRequired;  ///< c
+  double constant_n_per_kn = kRequired;
+  double linear_n_per_kn_kmh = kRequired;
+  double quadratic_n_per_kn_kmh2 = kRequired;
   PropulsionResistanceLaw law = PropulsionResistanceLaw::kAbc;
   CnResistanceParams cn = {};
   ModifiedDavisParams modified_davis = {};
@@ -83,15 +84,19 @@ struct PropulsionResistanceParams {
               {"cn", PropulsionResistanceLaw::kCn},
               {"modified_davis", PropulsionResistanceLaw::kModifiedDavis},
               {"szd", PropulsionResistanceLaw::kSzd},
-              {"strahl", PropulsionResistanceLaw::kStrahl}});
+              {"strahl", PropulsionResistanceLaw::kStrahl}},
+             "abc: a + b k + c k^2 with k in km/h (paper Eq 5); cn: Canadian National, AREMA Manual ch. 16; "
+             "modified_davis; szd: Russian traction rules; strahl");
     if (law == PropulsionResistanceLaw::kAbc) {
-      v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative);
-      v.Number("linear_n_per_kn_kmh", linear_n_per_kn_kmh, kNonNegative);
-      v.Number("quadratic_n_per_kn_kmh2", quadratic_n_per_kn_kmh2, kNonNegative);
+      v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative, "a, per weight");
+      v.Number("linear_n_per_kn_kmh", linear_n_per_kn_kmh, kNonNegative, "b, per weight and speed in km/h");
+      v.Number("quadratic_n_per_kn_kmh2", quadratic_n_per_kn_kmh2, kNonNegative,
+               "c, per weight and speed squared in km/h");
     }
-    if (law == PropulsionResistanceLaw::kCn) v.Group("cn", cn);
-    if (law == PropulsionResistanceLaw::kModifiedDavis) v.Group("modified_davis", modified_davis);
-    if (law == PropulsionResistanceLaw::kStrahl) v.Group("strahl", strahl);
+    if (law == PropulsionResistanceLaw::kCn) v.Group("cn", cn, "parameters of the law cn");
+    if (law == PropulsionResistanceLaw::kModifiedDavis)
+      v.Group("modified_davis", modified_davis, "parameters of the law modified_davis");
+    if (law == PropulsionResistanceLaw::kStrahl) v.Group("strahl", strahl, "parameters of the law strahl");
   }
 };
 

@@ -10,17 +10,20 @@ namespace train_dynamics {
 
 /// The controller `creep_control`.
 struct CreepControlParams {
-  double target_creepage = 0.05;  ///< s*
-  double dead_band = 0.25;        ///< of the target, to either side [-]
-  double prediction_s = 0.10;   ///< tau, by which it looks ahead: valve delay and part of the cylinder's lag
-  double least_slip_mps = 0.1;  ///< the target is never less than this
+  double target_creepage = 0.05;
+  double dead_band = 0.25;
+  double prediction_s = 0.10;
+  double least_slip_mps = 0.1;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true});
-    v.Number("dead_band", dead_band, Range{0.0, 1.0, false, true});
-    v.Number("prediction_s", prediction_s, kNonNegative);
-    v.Number("least_slip_mps", least_slip_mps, kPositive);
+    v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true},
+             "s*, slip speed over the train's speed that the controller aims at");
+    v.Number("dead_band", dead_band, Range{0.0, 1.0, false, true},
+             "share of the target to either side within which the valve holds");
+    v.Number("prediction_s", prediction_s, kNonNegative,
+             "tau, by which it looks ahead: valve delay and part of the cylinder's lag");
+    v.Number("least_slip_mps", least_slip_mps, kPositive, "least slip speed that it aims at");
   }
 };
 

@@ -14,15 +14,17 @@ enum class ValveState {
 
 /// A valve of wheel-slide protection with the cylinder behind it.
 struct CylinderValveParams {
-  double delay_s = 0.030;              ///< [A] from the controller's word to the valve's movement
-  double fill_time_constant_s = 0.25;  ///< [A]
-  double vent_time_constant_s = 0.10;  ///< [A]
+  double delay_s = 0.030;
+  double fill_time_constant_s = 0.25;
+  double vent_time_constant_s = 0.10;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("delay_s", delay_s, kNonNegative);
-    v.Number("fill_time_constant_s", fill_time_constant_s, kPositive);
-    v.Number("vent_time_constant_s", vent_time_constant_s, kPositive);
+    v.Number("delay_s", delay_s, kNonNegative, "from the controller's command to the valve's movement [A]");
+    v.Number("fill_time_constant_s", fill_time_constant_s, kPositive,
+             "time constant with which the cylinder fills [A]");
+    v.Number("vent_time_constant_s", vent_time_constant_s, kPositive,
+             "time constant with which the cylinder vents [A]");
   }
 };
 

@@ -31,30 +31,36 @@ enum class SlideController { kThreshold3State, kCreepControl };
 struct SlideProtectionParams {
   std::string name;
   SlideController controller = SlideController::kThreshold3State;
-  double sampling_period_s = 0.020;  ///< T_s, a multiple of the step dt
+  double sampling_period_s = 0.020;
   ReferenceSpeed reference_speed = ReferenceSpeed::kTrue;
-  double largest_deceleration_mps2 = 1.5;  ///< [A] a_max of the estimated reference speed
-  double least_speed_kmh = 3.0;            ///< below this reference speed all valves fill
-  double longest_vent_s = 10.0;  ///< [M] in one piece; then the valve fills until no vent is asked for
+  double largest_deceleration_mps2 = 1.5;
+  double least_speed_kmh = 3.0;
+  double longest_vent_s = 10.0;
   CylinderValveParams valve;
   Threshold3StateParams threshold_3state;
   CreepControlParams creep_control;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
+    v.Text("name", name, "name of the wheel-slide protection, for people");
     v.Choice("controller", controller,
              {{"threshold_3state", SlideController::kThreshold3State},
-              {"creep_control", SlideController::kCreepControl}});
-    v.Number("sampling_period_s", sampling_period_s, kPositive);
+              {"creep_control", SlideController::kCreepControl}},
+             "threshold_3state: thresholds of slip and deceleration; creep_control: aims at a slip");
+    v.Number("sampling_period_s", sampling_period_s, kPositive, "T_s, a multiple of dt_s");
     v.Choice("reference_speed", reference_speed,
-             {{"true", ReferenceSpeed::kTrue}, {"estimated", ReferenceSpeed::kEstimated}});
-    v.Number("largest_deceleration_mps2", largest_deceleration_mps2, kPositive);
-    v.Number("least_speed_kmh", least_speed_kmh, kNonNegative);
-    v.Number("longest_vent_s", longest_vent_s, kPositive);
-    v.Group("valve", valve);
-    if (controller == SlideController::kThreshold3State) v.Group("threshold_3state", threshold_3state);
-    if (controller == SlideController::kCreepControl) v.Group("creep_control", creep_control);
+             {{"true", ReferenceSpeed::kTrue}, {"estimated", ReferenceSpeed::kEstimated}},
+             "true: the vehicle's own speed; estimated: from its wheels");
+    v.Number("largest_deceleration_mps2", largest_deceleration_mps2, kPositive,
+             "a_max, bound of the estimated reference speed's fall [A]");
+    v.Number("least_speed_kmh", least_speed_kmh, kNonNegative, "reference speed below which all valves fill");
+    v.Number("longest_vent_s", longest_vent_s, kPositive,
+             "longest vent in one piece; then the valve fills until no vent is asked for [M]");
+    v.Group("valve", valve, "valve and cylinder behind it");
+    if (controller == SlideController::kThreshold3State)
+      v.Group("threshold_3state", threshold_3state, "thresholds of that controller");
+    if (controller == SlideController::kCreepControl)
+      v.Group("creep_control", creep_control, "parameters of that controller");
     v.Check(valve.delay_s <= kLongestDelay * sampling_period_s, "valve.delay_s",
             "must be at most three times sampling_period_s", {"valve", "sampling_period_s"});
   }

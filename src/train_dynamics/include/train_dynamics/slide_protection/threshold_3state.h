@@ -11,24 +11,29 @@ namespace train_dynamics {
 /// The thresholds of the controller `threshold_3state`; each slip threshold is the larger one of a share of the reference
 /// speed and a speed.
 struct Threshold3StateParams {
-  double vent_slip_ratio = 0.12, vent_slip_mps = 1.0;  ///< vent beyond it, whatever the wheel does
-  double alert_slip_ratio = 0.03,
-         alert_slip_mps = 0.3;  ///< vent beyond it if the wheel slows down at alert_deceleration
+  double vent_slip_ratio = 0.12, vent_slip_mps = 1.0;
+  double alert_slip_ratio = 0.03, alert_slip_mps = 0.3;
   double alert_deceleration_mps2 = 3.0;
-  double hold_slip_ratio = 0.05,
-         hold_slip_mps = 0.6;  ///< beyond it hold, or vent if the wheel still slows down
+  double hold_slip_ratio = 0.05, hold_slip_mps = 0.6;
   double hold_deceleration_mps2 = 0.5;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("vent_slip_ratio", vent_slip_ratio, kFraction);
-    v.Number("vent_slip_mps", vent_slip_mps, kNonNegative);
-    v.Number("alert_slip_ratio", alert_slip_ratio, kFraction);
-    v.Number("alert_slip_mps", alert_slip_mps, kNonNegative);
-    v.Number("alert_deceleration_mps2", alert_deceleration_mps2, kNonNegative);
-    v.Number("hold_slip_ratio", hold_slip_ratio, kFraction);
-    v.Number("hold_slip_mps", hold_slip_mps, kNonNegative);
-    v.Number("hold_deceleration_mps2", hold_deceleration_mps2, kNonNegative);
+    v.Number("vent_slip_ratio", vent_slip_ratio, kFraction,
+             "slip over reference speed beyond which the valve vents, whatever the wheel does");
+    v.Number("vent_slip_mps", vent_slip_mps, kNonNegative,
+             "least slip for that; the larger one of the two thresholds holds, here and below");
+    v.Number(
+        "alert_slip_ratio", alert_slip_ratio, kFraction,
+        "slip over reference speed beyond which it vents if the wheel slows down at alert_deceleration_mps2");
+    v.Number("alert_slip_mps", alert_slip_mps, kNonNegative, "least slip for that");
+    v.Number("alert_deceleration_mps2", alert_deceleration_mps2, kNonNegative,
+             "deceleration of the wheel for that");
+    v.Number("hold_slip_ratio", hold_slip_ratio, kFraction,
+             "slip over reference speed beyond which it holds, or vents if the wheel still slows down");
+    v.Number("hold_slip_mps", hold_slip_mps, kNonNegative, "least slip for that");
+    v.Number("hold_deceleration_mps2", hold_deceleration_mps2, kNonNegative,
+             "deceleration from which the wheel counts as still slowing down");
     v.Check(hold_slip_ratio <= vent_slip_ratio, "hold_slip_ratio", "must be at most vent_slip_ratio");
     v.Check(hold_slip_mps <= vent_slip_mps, "hold_slip_mps", "must be at most vent_slip_mps");
   }

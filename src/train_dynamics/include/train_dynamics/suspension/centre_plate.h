@@ -9,17 +9,20 @@ namespace train_dynamics {
 /// stiffness and damping, and a bilateral longitudinal spring and damper of the same values. The plate may
 /// lift off and rock.
 struct CentrePlateParams {
-  double stiffness_n_per_m = kRequired;  ///< of the whole plate, vertical; also longitudinal
-  double damping_ns_per_m = kRequired;   ///< of the whole plate, vertical; also longitudinal
-  double rim_offset_m = kRequired;       ///< of the rim points before and behind the centre
-  double height_m = kRequired;           ///< above rail, where the longitudinal force acts
+  double stiffness_n_per_m = kRequired;
+  double damping_ns_per_m = kRequired;
+  double rim_offset_m = kRequired;
+  double height_m = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("stiffness_n_per_m", stiffness_n_per_m, kPositive);
-    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative);
-    v.Number("rim_offset_m", rim_offset_m, kPositive);
-    v.Number("height_m", height_m, kFinite);
+    v.Number("stiffness_n_per_m", stiffness_n_per_m, kPositive,
+             "of the whole plate, vertical; the same longitudinally");
+    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative,
+             "of the whole plate, vertical; the same longitudinally");
+    v.Number("rim_offset_m", rim_offset_m, kPositive,
+             "distance of the two rim points before and behind the centre");
+    v.Number("height_m", height_m, kFinite, "height above rail at which the longitudinal force acts");
   }
 };
 

@@ -7,27 +7,36 @@ namespace train_dynamics {
 
 /// One friction wedge of a three-piece bogie, between the slope of the bolster and the column of the frame.
 struct FrictionWedgeParams {
-  double outer_stiffness_n_per_m = kRequired;       ///< of the spring under the wedge
-  double inner_stiffness_n_per_m = kRequired;       ///< of its inner spring; 0 = none
-  double stage1_travel_m = kRequired;               ///< wedge travel at which the inner spring takes load
-  double wedge_angle_deg = kRequired;               ///< alpha, of the bolster's slope to the vertical
-  double toe_angle_deg = kRequired;                 ///< gamma, of the column to the vertical, toe-out
-  double static_friction_coefficient = kRequired;   ///< on both surfaces
-  double kinetic_friction_coefficient = kRequired;  ///< on both surfaces
-  double blend_speed_mps = kRequired;  ///< rate at which half of the static-to-kinetic drop has happened
-  double offset_m = kRequired;         ///< of the wedges before and behind the bolster's centre
+  double outer_stiffness_n_per_m = kRequired;
+  double inner_stiffness_n_per_m = kRequired;
+  double stage1_travel_m = kRequired;
+  double wedge_angle_deg = kRequired;
+  double toe_angle_deg = kRequired;
+  double static_friction_coefficient = kRequired;
+  double kinetic_friction_coefficient = kRequired;
+  double blend_speed_mps = kRequired;
+  double offset_m = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive);
-    v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative);
-    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative);
-    v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0});
-    v.Number("toe_angle_deg", toe_angle_deg, Range{-20.0, 20.0, false, false});
-    v.Number("static_friction_coefficient", static_friction_coefficient, Range{0.0, 1.0, false, true});
-    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, Range{0.0, 1.0, false, true});
-    v.Number("blend_speed_mps", blend_speed_mps, kPositive);
-    v.Number("offset_m", offset_m, kPositive);
+    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive,
+             "stiffness of the spring under the wedge");
+    v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative,
+             "stiffness of its inner spring; 0: none");
+    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative,
+             "travel of the wedge at which the inner spring takes load");
+    v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0},
+             "alpha, angle of the bolster's slope to the vertical");
+    v.Number("toe_angle_deg", toe_angle_deg, Range{-20.0, 20.0, false, false},
+             "gamma, angle of the column to the vertical, toe-out positive");
+    v.Number("static_friction_coefficient", static_friction_coefficient, Range{0.0, 1.0, false, true},
+             "static friction on both surfaces");
+    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, Range{0.0, 1.0, false, true},
+             "kinetic friction on both surfaces");
+    v.Number("blend_speed_mps", blend_speed_mps, kPositive,
+             "sliding speed at which half of the drop from static to kinetic friction has happened");
+    v.Number("offset_m", offset_m, kPositive,
+             "distance of the wedges before and behind the bolster's centre");
     v.Check(kinetic_friction_coefficient <= static_friction_coefficient, "kinetic_friction_coefficient",
             "must be at most static_friction_coefficient");
   }

@@ -9,23 +9,29 @@ namespace train_dynamics {
 struct SpringNestParams {
   double outer_stiffness_n_per_m = kRequired;
   double inner_stiffness_n_per_m = kRequired;
-  double stage1_travel_m = kRequired;  ///< compression at which the inner springs take load
-  double stage2_travel_m = kRequired;  ///< further compression until the coils are solid
+  double stage1_travel_m = kRequired;
+  double stage2_travel_m = kRequired;
   double solid_stiffness_n_per_m = kRequired;
-  double rebound_clearance_m = kRequired;  ///< extension at which the bolster meets the rebound stop
-  double offset_m = kRequired;             ///< of the half nest before and behind the bolster's centre
-  double damping_ns_per_m = 0.0;           ///< of a linear damper beside the half nest
+  double rebound_clearance_m = kRequired;
+  double offset_m = kRequired;
+  double damping_ns_per_m = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive);
-    v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative);
-    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative);
-    v.Number("stage2_travel_m", stage2_travel_m, kNonNegative);
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive);
-    v.Number("rebound_clearance_m", rebound_clearance_m, kNonNegative);
-    v.Number("offset_m", offset_m, kNonNegative);
-    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative);
+    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive,
+             "stiffness of the outer springs of the half nest");
+    v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative,
+             "stiffness of its inner springs, in addition from stage1_travel_m on");
+    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative,
+             "compression at which the inner springs take load");
+    v.Number("stage2_travel_m", stage2_travel_m, kNonNegative,
+             "further compression until the coils are solid");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive, "stiffness of the solid coils");
+    v.Number("rebound_clearance_m", rebound_clearance_m, kNonNegative,
+             "extension at which the bolster meets the rebound stop");
+    v.Number("offset_m", offset_m, kNonNegative,
+             "distance of the half nest before and behind the bolster's centre");
+    v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative, "of a linear damper beside the half nest");
   }
 };
 

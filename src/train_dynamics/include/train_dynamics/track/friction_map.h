@@ -15,17 +15,20 @@ namespace train_dynamics {
 struct FrictionPatchParams {
   double from_m = kRequired;
   double to_m = kRequired;
-  std::optional<double> friction_coefficient{};  ///< mu0
+  std::optional<double> friction_coefficient{};
   std::optional<AdhesionParams> adhesion{};
-  std::optional<double> ramp_length_m{};  ///< default 1 m [A] with `adhesion`, else 0: a sharp end
+  std::optional<double> ramp_length_m{};
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("from_m", from_m, kFinite);
-    v.Number("to_m", to_m, kFinite);
-    v.Number("friction_coefficient", friction_coefficient, Range{0.0, 1.0, true, false});
-    v.Part("adhesion", adhesion, "adhesion");
-    v.Number("ramp_length_m", ramp_length_m, kNonNegative);
+    v.Number("from_m", from_m, kFinite, "position at which the patch begins");
+    v.Number("to_m", to_m, kFinite, "position at which the patch ends");
+    v.Number("friction_coefficient", friction_coefficient, Range{0.0, 1.0, true, false},
+             "mu0 of the patch; the rest of the adhesion stays the vehicle's");
+    v.Part("adhesion", adhesion, "adhesion", "whole adhesion of the patch, in place of friction_coefficient");
+    v.Number("ramp_length_m", ramp_length_m, kNonNegative,
+             "length around each end of the patch over which the surface changes linearly; default 1 m [A] "
+             "with adhesion, else 0");
     v.Check(from_m < to_m, "to_m", "must be greater than from_m", {"from_m"});
     v.Check(friction_coefficient || adhesion, "friction_coefficient", "must be given, or else adhesion",
             {"adhesion"});

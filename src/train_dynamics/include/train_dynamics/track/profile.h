@@ -8,15 +8,16 @@ namespace train_dynamics {
 ///
 ///   z_d(x) = (H/2) (1 - cos(2 pi x / L)),  0 <= x <= L,  positive down
 struct DipParams {
-  double from_m = kRequired;    ///< where x = 0
-  double depth_m = kRequired;   ///< H
-  double length_m = kRequired;  ///< L
+  double from_m = kRequired;
+  double depth_m = kRequired;
+  double length_m = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("from_m", from_m, kFinite);
-    v.Number("depth_m", depth_m, Range{-1.0, 1.0, false, false});
-    v.Number("length_m", length_m, kPositive);
+    v.Number("from_m", from_m, kFinite, "position at which the dip begins");
+    v.Number("depth_m", depth_m, Range{-1.0, 1.0, false, false},
+             "H, depth in the middle of the dip; negative: a hump");
+    v.Number("length_m", length_m, kPositive, "L, length of the dip: z = (H / 2) (1 - cos(2 pi x / L))");
   }
 };
 

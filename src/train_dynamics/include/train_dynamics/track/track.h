@@ -20,31 +20,34 @@ struct TrackParams {
   static constexpr const char* kTableKey = "points";  ///< a track may be a table of them
 
   std::string name;
-  std::vector<GradeParams> grades;                    ///< empty = level
-  std::vector<DipParams> dips;                        ///< overlapping dips add up
-  std::vector<FrictionPatchParams> friction_patches;  ///< where two overlap, the later entry holds
-  std::vector<CurveParams> curves;                    ///< empty = straight
-  std::vector<HeightParams> heights;                  ///< in place of grades
+  std::vector<GradeParams> grades;
+  std::vector<DipParams> dips;
+  std::vector<FrictionPatchParams> friction_patches;
+  std::vector<CurveParams> curves;
+  std::vector<HeightParams> heights;
   std::vector<SpeedLimitParams> speed_limits;
   std::vector<StationParams> stations;
-  /// A table of the route, in place of those of the lists above that it gives.
   std::vector<RoutePointParams> points;
-  std::optional<double> begin_m,
-      end_m;  ///< where the route is known; else from the first of the points to the last
+  std::optional<double> begin_m, end_m;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.List("grades", grades);
-    v.List("dips", dips);
-    v.List("friction_patches", friction_patches);
-    v.List("curves", curves);
-    v.List("heights", heights);
-    v.List("speed_limits", speed_limits);
-    v.List("stations", stations);
-    v.List("points", points);
-    v.Number("begin_m", begin_m, kFinite);
-    v.Number("end_m", end_m, kFinite);
+    v.Text("name", name, "name of the track, for people");
+    v.List("grades", grades, "stretches of constant grade; none: level");
+    v.List("dips", dips, "dips and humps of the rail; those that overlap add up");
+    v.List("friction_patches", friction_patches,
+           "stretches with a rail surface of their own; where two overlap, the later entry holds");
+    v.List("curves", curves, "curves of constant radius; none: straight");
+    v.List("heights", heights, "heights of the rail, in place of grades");
+    v.List("speed_limits", speed_limits, "speeds that are allowed");
+    v.List("stations", stations, "named places");
+    v.List("points", points,
+           "table of the route, a row for each position, in place of those lists above that it gives; may be "
+           "a CSV file");
+    v.Number("begin_m", begin_m, kFinite,
+             "where the route begins to be known; default: the first of points, or without bound");
+    v.Number("end_m", end_m, kFinite,
+             "where the route ends to be known; default: the last of points, or without bound");
     v.Check(!begin_m || !end_m || *begin_m < *end_m, "end_m", "must be greater than begin_m", {"begin_m"});
     for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, {rule.list});
   }

@@ -6,15 +6,16 @@ namespace train_dynamics {
 
 /// How fast the effort of a locomotive follows its controller.
 struct DriveParams {
-  double rise_rate_n_per_s = 40e3;   ///< largest growth of its size [A]
-  double fall_rate_n_per_s = 100e3;  ///< largest fall of its size [A]
-  double changeover_s = 10.0;        ///< without effort, between traction and dynamic brake [A]
+  double rise_rate_n_per_s = 40e3;
+  double fall_rate_n_per_s = 100e3;
+  double changeover_s = 10.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("rise_rate_n_per_s", rise_rate_n_per_s, kPositive);
-    v.Number("fall_rate_n_per_s", fall_rate_n_per_s, kPositive);
-    v.Number("changeover_s", changeover_s, kNonNegative);
+    v.Number("rise_rate_n_per_s", rise_rate_n_per_s, kPositive, "largest growth of the effort's size [A]");
+    v.Number("fall_rate_n_per_s", fall_rate_n_per_s, kPositive, "largest fall of the effort's size [A]");
+    v.Number("changeover_s", changeover_s, kNonNegative,
+             "time without effort between traction and dynamic brake [A]");
   }
 };
 

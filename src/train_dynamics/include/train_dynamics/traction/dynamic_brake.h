@@ -12,18 +12,19 @@ namespace train_dynamics {
 
 /// The brake that makes generators of a locomotive's traction motors.
 struct DynamicBrakeParams {
-  double largest_effort_n = kRequired;  ///< F_max, at the rims
-  double rim_power_w = kRequired;       ///< P_db, at the rims
-  double fade_speed_mps = 1.0;  ///< v_a, below which the effort fades: 5.4 for DC [S], 1.0 for AC drives [A]
-  /// [notch - 1] share of the effort.
+  double largest_effort_n = kRequired;
+  double rim_power_w = kRequired;
+  double fade_speed_mps = 1.0;
   std::vector<double> effort_share = {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0};
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("largest_effort_n", largest_effort_n, kPositive);
-    v.Number("rim_power_w", rim_power_w, kPositive);
-    v.Number("fade_speed_mps", fade_speed_mps, kPositive);
-    v.Numbers("effort_share", effort_share, kFraction);
+    v.Number("largest_effort_n", largest_effort_n, kPositive, "F_max, largest braking effort at the rims");
+    v.Number("rim_power_w", rim_power_w, kPositive, "P_db, braking power at the rims");
+    v.Number("fade_speed_mps", fade_speed_mps, kPositive,
+             "v_a, below which the effort fades: 5.4 for DC [S], 1.0 for AC drives [A]");
+    v.Numbers("effort_share", effort_share, kFraction,
+              "share of the effort of each notch, from notch 1, ascending");
     v.Check(!effort_share.empty(), "effort_share", "must list the share of each notch");
     v.Check(IsAscending(effort_share), "effort_share", "must ascend from notch to notch");
   }

@@ -12,23 +12,27 @@ namespace train_dynamics {
 
 /// What a locomotive takes from its tank or its line for the power at the rims.
 struct EnergySupplyParams {
-  std::vector<double> power_share = {1.0};     ///< ascending shares of the rim power P
-  std::vector<double> efficiency = {0.35};     ///< at these: power at the rims over power taken [A]
-  double idle_power_w = 0.0;                   ///< taken in addition at all times
-  double recovered_share = 0.0;                ///< of the dynamic brake's power that is fed back
-  std::optional<double> fuel_energy_j_per_kg;  ///< lower heating value (diesel 42.7e6); not given: electric
+  std::vector<double> power_share = {1.0};
+  std::vector<double> efficiency = {0.35};
+  double idle_power_w = 0.0;
+  double recovered_share = 0.0;
+  std::optional<double> fuel_energy_j_per_kg;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("power_share", power_share, kFraction);
-    v.Numbers("efficiency", efficiency, Range{0.0, 1.0, true, false});
+    v.Numbers("power_share", power_share, kFraction,
+              "shares of the rim power P at which efficiency is given, ascending");
+    v.Numbers("efficiency", efficiency, Range{0.0, 1.0, true, false},
+              "at these: power at the rims over power taken [A]");
     v.Check(!power_share.empty(), "power_share", "must list at least one share");
     v.Check(IsAscending(power_share), "power_share", "must ascend");
     v.Check(efficiency.size() == power_share.size(), "efficiency", "must have as many values as power_share",
             {"power_share"});
-    v.Number("idle_power_w", idle_power_w, kNonNegative);
-    v.Number("recovered_share", recovered_share, kFraction);
-    v.Number("fuel_energy_j_per_kg", fuel_energy_j_per_kg, kPositive);
+    v.Number("idle_power_w", idle_power_w, kNonNegative, "power taken in addition at all times");
+    v.Number("recovered_share", recovered_share, kFraction,
+             "share of the dynamic brake's power that is fed back");
+    v.Number("fuel_energy_j_per_kg", fuel_energy_j_per_kg, kPositive,
+             "lower heating value of the fuel (diesel 42.7e6); not given: electric");
     v.Check(!fuel_energy_j_per_kg || recovered_share == 0.0, "recovered_share",
             "must be 0 where fuel_energy_j_per_kg is given: no fuel is fed back", {"fuel_energy_j_per_kg"});
   }

@@ -19,27 +19,30 @@ struct TractionParams {
   TractiveEffortParams tractive_effort;
   std::optional<DynamicBrakeParams> dynamic_brake;
   DriveParams drive;
-  std::vector<int> driven_wheelsets;  ///< from 1 in front; empty: all
-  /// i^2 J of the motor and its gear, in addition to the pitch inertia of each driven wheelset.
+  std::vector<int> driven_wheelsets;
   double drive_inertia_kgm2 = 0.0;
-  std::optional<SlipControlParams>
-      slip_control;  ///< not given: torque follows the effort, whatever slips (2D model)
+  std::optional<SlipControlParams> slip_control;
   std::optional<EnergySupplyParams> energy_supply;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Group("tractive_effort", tractive_effort);
-    v.Group("dynamic_brake", dynamic_brake);
-    v.Group("drive", drive);
-    v.Integers("driven_wheelsets", driven_wheelsets, Range{1, 6, false, false});
+    v.Text("name", name, "name of the traction equipment, for people");
+    v.Group("tractive_effort", tractive_effort,
+            "what the locomotive can pull with, at the rims of its driven wheels");
+    v.Group("dynamic_brake", dynamic_brake, "brake by the traction motors; not given: none");
+    v.Group("drive", drive, "how fast the effort follows the controller");
+    v.Integers("driven_wheelsets", driven_wheelsets, Range{1, 6, false, false},
+               "driven wheelsets, from 1 in front, ascending; none: all");
     bool repeats = false;
     for (std::size_t i = 1; i < driven_wheelsets.size(); ++i)
       repeats = repeats || driven_wheelsets[i] <= driven_wheelsets[i - 1];
     v.Check(!repeats, "driven_wheelsets", "must ascend");
-    v.Number("drive_inertia_kgm2", drive_inertia_kgm2, kNonNegative);
-    v.Group("slip_control", slip_control);
-    v.Group("energy_supply", energy_supply);
+    v.Number("drive_inertia_kgm2", drive_inertia_kgm2, kNonNegative,
+             "i^2 J of the motor and its gear, in addition to the pitch inertia of each driven wheelset");
+    v.Group("slip_control", slip_control,
+            "takes torque from wheelsets that slip (2D model); not given: torque follows the effort, "
+            "whatever slips");
+    v.Group("energy_supply", energy_supply, "energy taken from tank or line; not given: it is not computed");
   }
 
   bool Drives(int wheelset) const;     ///< @param wheelset  from 0

@@ -9,20 +9,23 @@ namespace train_dynamics {
 
 /// Takes torque from driven wheelsets that slip (2D model).
 struct SlipControlParams {
-  double sampling_period_s =
-      0.005;  ///< T_s, a multiple of the step; a wheelset over its limit runs away in 25 ms
-  double target_creepage = 0.02;  ///< s* over the speed
-  double least_slip_mps = 0.1;    ///< s* is never less [A]
-  double gain_per_mps = 0.3;      ///< share of the torque that is taken per slip speed beyond s* [A]
-  double recovery_per_s = 0.2;    ///< share of the torque that comes back per second [A]
+  double sampling_period_s = 0.005;
+  double target_creepage = 0.02;
+  double least_slip_mps = 0.1;
+  double gain_per_mps = 0.3;
+  double recovery_per_s = 0.2;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("sampling_period_s", sampling_period_s, Range{0.0, 0.005, true, false});
-    v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true});
-    v.Number("least_slip_mps", least_slip_mps, kPositive);
-    v.Number("gain_per_mps", gain_per_mps, kPositive);
-    v.Number("recovery_per_s", recovery_per_s, kPositive);
+    v.Number("sampling_period_s", sampling_period_s, Range{0.0, 0.005, true, false},
+             "T_s, a multiple of dt_s; a wheelset over its limit runs away in 25 ms");
+    v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true},
+             "slip speed s* over the train's speed that the control aims at");
+    v.Number("least_slip_mps", least_slip_mps, kPositive, "least value of s* [A]");
+    v.Number("gain_per_mps", gain_per_mps, kPositive,
+             "share of the torque that is taken per slip speed beyond s* [A]");
+    v.Number("recovery_per_s", recovery_per_s, kPositive,
+             "share of the torque that comes back per second [A]");
   }
 };
 

@@ -20,15 +20,17 @@ double NotchShare(const std::vector<double>& shares, double notch);
 
 /// The steps of a throttle.
 struct ThrottleParams {
-  /// [notch - 1] share of the starting effort. n / 8 after Cole, Handbook of Railway Vehicle Dynamics, ch. 9, 2006 [M].
   std::vector<double> effort_share = {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0};
-  /// [notch - 1] share of the power. That of a C44-9W, read off its display [S] (A. Krug, Railroad Facts).
   std::vector<double> power_share = {0.0444, 0.1109, 0.2306, 0.3438, 0.4923, 0.6520, 0.8117, 1.0};
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("effort_share", effort_share, kFraction);
-    v.Numbers("power_share", power_share, kFraction);
+    v.Numbers("effort_share", effort_share, kFraction,
+              "share of the starting effort of each notch, from notch 1, ascending: n / 8 (Cole, Handbook of "
+              "Railway Vehicle Dynamics, ch. 9, 2006) [M]");
+    v.Numbers(
+        "power_share", power_share, kFraction,
+        "share of the power of each notch: a C44-9W's, read off its display (A. Krug, Railroad Facts) [S]");
     v.Check(!effort_share.empty(), "effort_share", "must list the share of each notch");
     v.Check(IsAscending(effort_share), "effort_share", "must ascend from notch to notch");
     v.Check(power_share.size() == effort_share.size(), "power_share",
@@ -41,13 +43,14 @@ struct ThrottleParams {
 
 /// Effort over speed, linear between points; beyond the last point its effort falls as 1/v.
 struct EffortTableParams {
-  std::vector<double> speed_kmh;  ///< ascending, >= 0
-  std::vector<double> effort_n;   ///< > 0, not ascending
+  std::vector<double> speed_kmh;
+  std::vector<double> effort_n;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers("speed_kmh", speed_kmh, kNonNegative);
-    v.Numbers("effort_n", effort_n, kPositive);
+    v.Numbers("speed_kmh", speed_kmh, kNonNegative,
+              "speeds of the table, ascending; beyond the last one the effort falls as 1/v");
+    v.Numbers("effort_n", effort_n, kPositive, "effort at each of them, not ascending");
     v.Check(!speed_kmh.empty(), "speed_kmh", "must list the speeds of the table");
     v.Check(IsAscending(speed_kmh), "speed_kmh", "must ascend");
     v.Check(effort_n.size() == speed_kmh.size(), "effort_n", "must have as many values as speed_kmh",
@@ -63,19 +66,23 @@ struct EffortTableParams {
 
 /// What a locomotive can pull with, at the rims of its driven wheels.
 struct TractiveEffortParams {
-  double starting_effort_n = kRequired;  ///< F_start, at the highest notch
-  double rim_power_w = kRequired;  ///< P, at the rims: 0.93 of the engine's with AC, 0.85 with DC drives [S]
+  double starting_effort_n = kRequired;
+  double rim_power_w = kRequired;
   ThrottleParams throttle;
-  std::optional<EffortTableParams> table;  ///< of the highest notch
+  std::optional<EffortTableParams> table;
   UsableAdhesionParams usable_adhesion;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("starting_effort_n", starting_effort_n, kPositive);
-    v.Number("rim_power_w", rim_power_w, kPositive);
-    v.Group("throttle", throttle);
-    v.Group("table", table);
-    v.Group("usable_adhesion", usable_adhesion);
+    v.Number("starting_effort_n", starting_effort_n, kPositive,
+             "F_start, effort at the rims at the highest notch");
+    v.Number("rim_power_w", rim_power_w, kPositive,
+             "P, power at the rims: 0.93 of the engine's with AC, 0.85 with DC drives [S]");
+    v.Group("throttle", throttle, "shares of effort and power of each notch");
+    v.Group("table", table,
+            "measured effort of the highest notch over speed; not given: min(F_start, P / v)");
+    v.Group("usable_adhesion", usable_adhesion,
+            "adhesion that the control makes use of, which limits the effort");
   }
 };
 

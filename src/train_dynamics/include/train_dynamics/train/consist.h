@@ -21,27 +21,33 @@ inline constexpr std::initializer_list<std::pair<const char*, VehicleModel>> kVe
 struct ConsistGroupParams {
   VehicleParams vehicle;
   int count = 1;
-  int vehicles_per_unit = 1;                               ///< 2: pairs, as of draw-bar wagons
-  ConnectionParams unit_connection;                        ///< within a unit
-  std::optional<VehicleModel> model = std::nullopt;        ///< none: that of the scenario
-  std::optional<double> initial_speed_kmh = std::nullopt;  ///< none: that of the scenario
-  double command_delay_s = 0.0;  ///< of the driver's commands on their way to locomotives of the group
-  bool locomotive = false;       ///< the vehicles are shown as locomotives; those with traction are, anyway
+  int vehicles_per_unit = 1;
+  ConnectionParams unit_connection;
+  std::optional<VehicleModel> model = std::nullopt;
+  std::optional<double> initial_speed_kmh = std::nullopt;
+  double command_delay_s = 0.0;
+  bool locomotive = false;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Part("vehicle", vehicle, "vehicles");
-    v.Number("load_fraction", vehicle.load_fraction,
-             kFraction);  // of this group, in place of the vehicle's own
+    v.Part("vehicle", vehicle, "vehicles", "the vehicle of which the group has count");
+    v.Number("load_fraction", vehicle.load_fraction, kFraction,
+             "how much of its load each vehicle of the group carries, in place of the vehicle's own");
     v.Check(vehicle.load || !vehicle.load_fraction, "load_fraction",
             "needs a vehicle with load: what it carries when it is full", {"vehicle"});
-    v.Choice("model", model, kVehicleModels);
-    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
-    v.Integer("count", count, Range{1, 100000, false, false});
-    v.Flag("locomotive", locomotive);
-    v.Number("command_delay_s", command_delay_s, kNonNegative);
-    v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false});
-    if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers");
+    v.Choice("model", model, kVehicleModels,
+             "model of the group's vehicles; not given: that of the scenario");
+    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false},
+             "speed of the group at time 0; not given: that of the scenario");
+    v.Integer("count", count, Range{1, 100000, false, false}, "number of vehicles");
+    v.Flag("locomotive", locomotive,
+           "the vehicles are shown as locomotives; those with traction are, anyway");
+    v.Number("command_delay_s", command_delay_s, kNonNegative,
+             "delay of the driver's commands on their way to locomotives of the group");
+    v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false},
+              "vehicles that are permanently joined; 2: pairs, as of draw-bar wagons");
+    if (vehicles_per_unit > 1)
+      v.Part("unit_connection", unit_connection, "couplers", "connection within a unit");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
             "must be a multiple of vehicles_per_unit", {"vehicles_per_unit"});
   }
@@ -55,9 +61,9 @@ struct TrainParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Part("connection", connection, "couplers");
-    v.List("consist", consist);
+    v.Text("name", name, "name of the train, for people");
+    v.Part("connection", connection, "couplers", "connection between units");
+    v.List("consist", consist, "groups of vehicles from front to rear; may be a CSV file");
     v.Check(!consist.empty(), "consist", "must list at least one group of vehicles");
     long vehicles = 0;
     for (std::size_t i = 0; i < consist.size(); ++i) {

@@ -12,19 +12,19 @@ namespace train_dynamics {
 
 /// Something that comes true on the way. All that is given must hold at one time.
 struct ConditionParams {
-  std::optional<double>
-      position_m;  ///< the centre of the first vehicle is there, or has passed it, either way
-  std::optional<double> speed_above_kmh, speed_below_kmh;  ///< bounds of the train's mean speed, either way
-  bool standing = false;  ///< the mean speed is at most 1 mm/s, or has just changed its sign
-  double delay_s = 0.0;   ///< what follows follows so much later
+  std::optional<double> position_m;
+  std::optional<double> speed_above_kmh, speed_below_kmh;
+  bool standing = false;
+  double delay_s = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("position_m", position_m, kFinite);
-    v.Number("speed_above_kmh", speed_above_kmh, kNonNegative);
-    v.Number("speed_below_kmh", speed_below_kmh, kPositive);
-    v.Flag("standing", standing);
-    v.Number("delay_s", delay_s, kNonNegative);
+    v.Number("position_m", position_m, kFinite,
+             "the centre of the first vehicle is there, or has passed it, either way");
+    v.Number("speed_above_kmh", speed_above_kmh, kNonNegative, "the train's mean speed is above, either way");
+    v.Number("speed_below_kmh", speed_below_kmh, kPositive, "the train's mean speed is below, either way");
+    v.Flag("standing", standing, "the mean speed is at most 1 mm/s, or has just changed its sign");
+    v.Number("delay_s", delay_s, kNonNegative, "what follows follows so much later");
     v.Check(position_m || speed_above_kmh || speed_below_kmh || standing, "position_m",
             "must be given, or else speed_above_kmh, speed_below_kmh or standing",
             {"speed_above_kmh", "speed_below_kmh", "standing"});
@@ -48,22 +48,28 @@ const char* NameOf(DriverCommandKind kind);
 struct DriverCommand {
   std::optional<double> time_s;
   DriverCommandKind kind = DriverCommandKind::kApply;
-  double reduction_kpa = kRequired;  ///< of the brake pipe in total, for kApply only
-  double notch = kRequired;          ///< of throttle or dynamic brake; 0: off
-  std::vector<int> vehicles;  ///< locomotives that obey throttle and dynamic brake, see LocomotiveCommand
+  double reduction_kpa = kRequired;
+  double notch = kRequired;
+  std::vector<int> vehicles;
   std::optional<ConditionParams> when;
-  std::optional<double> exchange;  ///< at its start; of commands that were given to a running train
+  std::optional<double> exchange;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
-    v.Group("when", when);
-    v.Number("exchange", exchange, Range{0.0, 1e12, false, false});
-    v.Choice("kind", kind, kDriverCommandKinds);
-    if (kind == DriverCommandKind::kApply) v.Number("reduction_kpa", reduction_kpa, kPositive);
+    v.Number("time_s", time_s, kNonNegative, "when the command is given; or else when, or exchange");
+    v.Group("when", when, "condition upon which the command is given");
+    v.Number(
+        "exchange", exchange, Range{0.0, 1e12, false, false},
+        "number of the exchange at whose start it is given: of commands that were given to a running train");
+    v.Choice("kind", kind, kDriverCommandKinds,
+             "apply, emergency, release: the brake; throttle, dynamic_brake: locomotives");
+    if (kind == DriverCommandKind::kApply)
+      v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
     if (IsOfLocomotives()) {
-      v.Number("notch", notch, Range{0.0, 100.0, false, false});
-      v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false});
+      v.Number("notch", notch, Range{0.0, 100.0, false, false},
+               "of throttle or dynamic brake; 0: off; each ends what the other has asked for");
+      v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
+                 "locomotives that obey, from 1, or from -1 for the last; none: all");
     }
     const int times = (time_s ? 1 : 0) + (when ? 1 : 0) + (exchange ? 1 : 0);
     v.Check(times > 0, "time_s", "must be given, or else when (a condition)", {"when", "exchange"});

@@ -15,18 +15,19 @@ enum class LocomotiveCommandKind { kThrottle, kDynamicBrake };
 struct LocomotiveCommand {
   double time_s = kRequired;
   LocomotiveCommandKind kind = LocomotiveCommandKind::kThrottle;
-  double notch = kRequired;  ///< 0: off
-  std::vector<int>
-      vehicles;  ///< that obey: locomotives, from 1, or from -1 for the last; empty: all locomotives
+  double notch = kRequired;
+  std::vector<int> vehicles;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("time_s", time_s, kNonNegative);
+    v.Number("time_s", time_s, kNonNegative, "when the command is given");
     v.Choice("kind", kind,
              {{"throttle", LocomotiveCommandKind::kThrottle},
-              {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}});
-    v.Number("notch", notch, Range{0.0, 100.0, false, false});
-    v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false});
+              {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}},
+             "throttle or dynamic_brake; each ends what the other has asked for");
+    v.Number("notch", notch, Range{0.0, 100.0, false, false}, "0: off");
+    v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
+               "locomotives that obey, from 1, or from -1 for the last; none: all");
   }
 
   /// What the locomotives that obey are asked for from then on.

@@ -19,53 +19,65 @@ namespace train_dynamics {
 struct ScenarioParams {
   std::string name;
   std::string description;
-  VehicleModel model = VehicleModel::kTwoD;  ///< of the groups of vehicles that name none
+  VehicleModel model = VehicleModel::kTwoD;
   TrainParams train;
   TrackParams track;
-  std::string
-      pressure_table;  ///< CSV file with the cylinder pressures of each vehicle; empty: `brake` computes them
-  std::optional<BrakeSystemParams> brake;  ///< computes the pressures from the driver's commands
+  std::string pressure_table;
+  std::optional<BrakeSystemParams> brake;
   std::vector<DriverCommand> commands;
   double initial_speed_kmh = kRequired;
-  double start_position_m = 0.0;  ///< of the first vehicle's centre along the track
+  double start_position_m = 0.0;
   SlackState initial_slack = SlackState::kStretched;
   double duration_s = kRequired;
-  std::optional<ConditionParams> until;  ///< ends the run earlier, at the next record
+  std::optional<ConditionParams> until;
   double dt_s = 0.001;
-  double exchange_interval_s = 0.001;  ///< a multiple of dt_s
-  double record_interval_s = 0.01;     ///< a multiple of exchange_interval_s
-  double ledger_interval_s = 1.0;      ///< of the energy ledger; a multiple of record_interval_s
+  double exchange_interval_s = 0.001;
+  double record_interval_s = 0.01;
+  double ledger_interval_s = 1.0;
   LtdIntegrator integrator = LtdIntegrator::kLeapfrog;
-  bool adhesion_limit = true;  ///< of LTD vehicles: the rail gives at most mu0 W (2D vehicles always know)
-  std::vector<int> detail_vehicles;  ///< recorded in full detail; from 1, or from -1 for the last
+  bool adhesion_limit = true;
+  std::vector<int> detail_vehicles;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Text("description", description);
-    v.Choice("model", model, kVehicleModels);
-    v.Part("train", train, "trains");
-    v.Part("track", track, "tracks");
-    v.Text("pressure_table", pressure_table);
-    v.Part("brake", brake, "brakes");
-    v.List("commands", commands);
+    v.Text("name", name, "name of the scenario, for people");
+    v.Text("description", description, "what the scenario shows");
+    v.Choice("model", model, kVehicleModels,
+             "of the groups of vehicles that name none: 2d: bodies, suspension, wheel-rail contact in the "
+             "plane; ltd: one mass with rotating inertia; ltd_no_inertia: one mass");
+    v.Part("train", train, "trains", "the train");
+    v.Part("track", track, "tracks", "the track; not given: level and straight");
+    v.Text("pressure_table", pressure_table,
+           "CSV file with the cylinder pressure of each vehicle over time; not given: brake computes them");
+    v.Part("brake", brake, "brakes", "brake system, which computes the pressures from the driver's commands");
+    v.List("commands", commands, "what the driver does, and when");
     v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
-    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false});
-    v.Number("start_position_m", start_position_m, kFinite);
+    v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false},
+             "speed of the train at time 0; negative: backwards");
+    v.Number("start_position_m", start_position_m, kFinite,
+             "position of the first vehicle's centre along the track at time 0");
     v.Choice("initial_slack", initial_slack,
              {{"stretched", SlackState::kStretched},
               {"middle", SlackState::kMiddle},
-              {"bunched", SlackState::kBunched}});
-    v.Number("duration_s", duration_s, Range{0.0, 1e6});
-    v.Group("until", until);
-    v.Number("dt_s", dt_s, Range{1e-6, 0.1, false, false});
-    v.Number("exchange_interval_s", exchange_interval_s, kPositive);
-    v.Number("record_interval_s", record_interval_s, kPositive);
-    v.Number("ledger_interval_s", ledger_interval_s, kPositive);
+              {"bunched", SlackState::kBunched}},
+             "where the slack of all connections is at time 0");
+    v.Number("duration_s", duration_s, Range{0.0, 1e6},
+             "simulated time at which the run ends; a multiple of record_interval_s");
+    v.Group("until", until, "condition that ends the run earlier, at the next record");
+    v.Number("dt_s", dt_s, Range{1e-6, 0.1, false, false}, "time step");
+    v.Number("exchange_interval_s", exchange_interval_s, kPositive,
+             "time between exchanges of forces and pressures, a multiple of dt_s");
+    v.Number("record_interval_s", record_interval_s, kPositive,
+             "time between records, a multiple of exchange_interval_s");
+    v.Number("ledger_interval_s", ledger_interval_s, kPositive,
+             "time between energy ledgers, a multiple of record_interval_s");
     v.Choice("integrator", integrator,
-             {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}});
-    v.Flag("adhesion_limit", adhesion_limit);
-    v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false});
+             {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}},
+             "of LTD vehicles");
+    v.Flag("adhesion_limit", adhesion_limit,
+           "of LTD vehicles: the rail gives at most mu0 W (2D vehicles always know)");
+    v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false},
+               "vehicles recorded in full detail, from 1, or from -1 for the last");
     v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s",
             {"dt_s"});
     v.Check(Multiple(record_interval_s, exchange_interval_s), "record_interval_s",

@@ -25,29 +25,31 @@ inline constexpr double kGravity = 9.81;  ///< [m/s^2]
 struct BodyParams {
   double mass_kg = kRequired;
   double pitch_inertia_kgm2 = kRequired;
-  double cg_height_m = kRequired;  ///< above rail, at rest without load
+  double cg_height_m = kRequired;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("mass_kg", mass_kg, kPositive);
-    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
-    v.Number("cg_height_m", cg_height_m, kPositive);
+    v.Number("mass_kg", mass_kg, kPositive, "mass of the body");
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive,
+             "pitch inertia about its centre of gravity");
+    v.Number("cg_height_m", cg_height_m, kPositive,
+             "height of its centre of gravity above rail, at rest without load");
   }
 };
 
 /// A wheelset: two wheels and their axle. Its CG is at the height of the wheel radius.
 struct WheelsetParams {
   double mass_kg = kRequired;
-  double pitch_inertia_kgm2 = kRequired;  ///< J, of the rotation
-  double wheel_radius_m = kRequired;      ///< r
-  bool accept_large_inertia = false;      ///< no warning of a J above m r^2
+  double pitch_inertia_kgm2 = kRequired;
+  double wheel_radius_m = kRequired;
+  bool accept_large_inertia = false;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("mass_kg", mass_kg, kPositive);
-    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive);
-    v.Number("wheel_radius_m", wheel_radius_m, kPositive);
-    v.Flag("accept_large_inertia", accept_large_inertia);
+    v.Number("mass_kg", mass_kg, kPositive, "mass of the wheelset");
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive, "J, inertia of its rotation");
+    v.Number("wheel_radius_m", wheel_radius_m, kPositive, "r, radius of the wheels");
+    v.Flag("accept_large_inertia", accept_large_inertia, "no warning of a J above m r^2");
   }
 
   /// J / (m r^2) [-]: 1 if all mass were at the tread; no wheelset can have more.
@@ -56,33 +58,35 @@ struct WheelsetParams {
 
 /// Contact of one wheel with its rail; two per wheelset.
 struct WheelRailParams {
-  NormalContactParams normal;  ///< of one wheel
+  NormalContactParams normal;
   HertzParams hertz;
-  double shear_modulus_pa = kRequired;                   ///< G
-  double creepage_regularisation_speed_mps = kRequired;  ///< v0
+  double shear_modulus_pa = kRequired;
+  double creepage_regularisation_speed_mps = kRequired;
   AdhesionParams adhesion;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Group("normal", normal);
-    v.Group("hertz", hertz);
-    v.Number("shear_modulus_pa", shear_modulus_pa, kPositive);
-    v.Number("creepage_regularisation_speed_mps", creepage_regularisation_speed_mps, kPositive);
-    v.Part("adhesion", adhesion, "adhesion");
+    v.Group("normal", normal, "normal stiffness and damping of one wheel");
+    v.Group("hertz", hertz, "elastic constants and lateral radii");
+    v.Number("shear_modulus_pa", shear_modulus_pa, kPositive, "G, shear modulus of wheel and rail");
+    v.Number("creepage_regularisation_speed_mps", creepage_regularisation_speed_mps, kPositive,
+             "v0, speed below which creepage is regularised");
+    v.Part("adhesion", adhesion, "adhesion", "adhesion of the rail, where the track has no patch");
   }
 };
 
 /// What a vehicle carries when it is full.
 struct LoadParams {
   double mass_kg = kRequired;
-  std::optional<double> cg_height_m;         ///< above rail; 2D model
-  std::optional<double> pitch_inertia_kgm2;  ///< about its own CG; 2D model
+  std::optional<double> cg_height_m;
+  std::optional<double> pitch_inertia_kgm2;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("mass_kg", mass_kg, kPositive);
-    v.Number("cg_height_m", cg_height_m, kPositive);
-    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kNonNegative);
+    v.Number("mass_kg", mass_kg, kPositive, "mass of the full load");
+    v.Number("cg_height_m", cg_height_m, kPositive, "height of its centre of gravity above rail (2D model)");
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kNonNegative,
+             "pitch inertia about its own centre of gravity (2D model)");
   }
 };
 
@@ -90,57 +94,60 @@ struct LoadParams {
 /// model as well: a carbody on two bogies of two or three wheelsets each.
 struct VehicleParams {
   std::string name;
-  double length_m = kRequired;          ///< over couplers
-  std::optional<double> mass_kg;        ///< without `load`; given: there are no bodies, and only LTD models
-  int axles = 4;                        ///< of a vehicle with mass_kg: of all units of an articulated one
-  double rotating_mass_kg = 0.0;        ///< m_e of a vehicle with mass_kg: of wheelsets and drives together
-  std::optional<LoadParams> load;       ///< what it carries when it is full, beside mass_kg or the bodies
-  std::optional<double> load_fraction;  ///< how much of that it carries; none: all
+  double length_m = kRequired;
+  std::optional<double> mass_kg;
+  int axles = 4;
+  double rotating_mass_kg = 0.0;
+  std::optional<LoadParams> load;
+  std::optional<double> load_fraction;
   BodyParams carbody;
-  BodyParams bolster;      ///< without the wedges
-  BodyParams bogie_frame;  ///< the two side frames of a bogie as one body
+  BodyParams bolster;
+  BodyParams bogie_frame;
   WheelsetParams wheelset;
-  double wedge_mass_kg = kRequired;  ///< of one of the eight wedges; moves with its bolster
+  double wedge_mass_kg = kRequired;
   double half_bogie_spacing_m = kRequired;
-  int wheelsets_per_bogie = 2;                 ///< 2 or 3
-  double half_wheelset_spacing_m = kRequired;  ///< of the outer wheelsets of a bogie from its centre
-  double middle_wheelset_offset_m = 0.0;  ///< of the middle one of three from the bogie's centre, positive
-                                          ///< away from the vehicle's centre
-  double coupler_height_m = kRequired;    ///< above rail
+  int wheelsets_per_bogie = 2;
+  double half_wheelset_spacing_m = kRequired;
+  double middle_wheelset_offset_m = 0.0;
+  double coupler_height_m = kRequired;
   WheelRailParams wheel_rail;
-  LinearSpringDamper adaptor_pad;                     ///< one of two per wheelset; the same in x and z
-  SpringNestParams spring_nest;                       ///< a quarter of a bogie
-  std::optional<FrictionWedgeParams> friction_wedge;  ///< one of four per bogie; not given: no wedges
-  LinearSpringDamper bolster_guide;                   ///< longitudinal, bolster in frame
+  LinearSpringDamper adaptor_pad;
+  SpringNestParams spring_nest;
+  std::optional<FrictionWedgeParams> friction_wedge;
+  LinearSpringDamper bolster_guide;
   double bolster_guide_height_m = kRequired;
   CentrePlateParams centre_plate;
   BrakeRiggingParams brake_rigging;
-  std::optional<SlideProtectionParams>
-      wheel_slide_protection;  ///< not given: the vehicle has none (2D model)
+  std::optional<SlideProtectionParams> wheel_slide_protection;
   PropulsionResistanceParams propulsion_resistance;
   CurvingResistanceParams curving_resistance;
-  std::optional<TractionParams> traction;  ///< given: the vehicle is a locomotive
+  std::optional<TractionParams> traction;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Number("length_m", length_m, kPositive);
-    v.Number("mass_kg", mass_kg, kPositive);
-    v.Group("load", load);
-    v.Number("load_fraction", load_fraction, kFraction);
+    v.Text("name", name, "name of the vehicle, for people");
+    v.Number("length_m", length_m, kPositive, "length over couplers");
+    v.Number("mass_kg", mass_kg, kPositive,
+             "mass without load; given: the vehicle is one mass without bodies, for LTD models only");
+    v.Group("load", load, "what the vehicle carries when it is full, beside mass_kg or the bodies");
+    v.Number("load_fraction", load_fraction, kFraction, "how much of that it carries; not given: all");
     v.Check(load || !load_fraction, "load_fraction", "needs load: what the vehicle carries when it is full",
             {"load"});
     if (IsOneMass()) {
-      v.Integer("axles", axles, Range{1.0, 1000.0, false, false});
-      v.Number("rotating_mass_kg", rotating_mass_kg, kNonNegative);
+      v.Integer("axles", axles, Range{1.0, 1000.0, false, false},
+                "number of axles of a vehicle with mass_kg, of all units of an articulated one");
+      v.Number("rotating_mass_kg", rotating_mass_kg, kNonNegative,
+               "m_e of a vehicle with mass_kg: equivalent mass of its wheelsets and drives together");
     } else {
       VisitBodies(v);
     }
-    v.Group("brake_rigging", brake_rigging);
-    v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection");
-    v.Group("propulsion_resistance", propulsion_resistance);
-    v.Group("curving_resistance", curving_resistance);
-    v.Part("traction", traction, "traction");
+    v.Group("brake_rigging", brake_rigging,
+            "brake rigging, from cylinder pressure to the shoes' tangential force");
+    v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection",
+           "wheel-slide protection (2D model); not given: none");
+    v.Group("propulsion_resistance", propulsion_resistance, "resistance of straight level track");
+    v.Group("curving_resistance", curving_resistance, "resistance of curves");
+    v.Part("traction", traction, "traction", "traction equipment; given: the vehicle is a locomotive");
     v.Check(
         !traction || traction->driven_wheelsets.empty() || traction->driven_wheelsets.back() <= Wheelsets(),
         "traction.driven_wheelsets", "must name wheelsets that the vehicle has", {"traction"});
@@ -190,23 +197,28 @@ struct VehicleParams {
   /// The keys of the 2D model.
   template <class Visitor>
   void VisitBodies(Visitor& v) {
-    v.Group("carbody", carbody);
-    v.Group("bolster", bolster);
-    v.Group("bogie_frame", bogie_frame);
-    v.Group("wheelset", wheelset);
-    v.Number("wedge_mass_kg", wedge_mass_kg, kNonNegative);
-    v.Number("half_bogie_spacing_m", half_bogie_spacing_m, kPositive);
-    v.Integer("wheelsets_per_bogie", wheelsets_per_bogie, Range{2.0, 3.0, false, false});
-    v.Number("half_wheelset_spacing_m", half_wheelset_spacing_m, kPositive);
-    v.Number("middle_wheelset_offset_m", middle_wheelset_offset_m, kFinite);
-    v.Number("coupler_height_m", coupler_height_m, kPositive);
-    v.Group("wheel_rail", wheel_rail);
-    v.Group("adaptor_pad", adaptor_pad);
-    v.Group("spring_nest", spring_nest);
-    v.Group("friction_wedge", friction_wedge);
-    v.Group("bolster_guide", bolster_guide);
-    v.Number("bolster_guide_height_m", bolster_guide_height_m, kPositive);
-    v.Group("centre_plate", centre_plate);
+    v.Group("carbody", carbody, "carbody, without load");
+    v.Group("bolster", bolster, "one bolster, without the wedges");
+    v.Group("bogie_frame", bogie_frame, "the two side frames of a bogie as one body");
+    v.Group("wheelset", wheelset, "one wheelset");
+    v.Number("wedge_mass_kg", wedge_mass_kg, kNonNegative,
+             "mass of one of the eight wedges; it moves with its bolster");
+    v.Number("half_bogie_spacing_m", half_bogie_spacing_m, kPositive,
+             "distance of each bogie's centre from the vehicle's");
+    v.Integer("wheelsets_per_bogie", wheelsets_per_bogie, Range{2.0, 3.0, false, false}, "2 or 3");
+    v.Number("half_wheelset_spacing_m", half_wheelset_spacing_m, kPositive,
+             "distance of the outer wheelsets of a bogie from its centre");
+    v.Number("middle_wheelset_offset_m", middle_wheelset_offset_m, kFinite,
+             "distance of the middle one of three wheelsets from the bogie's centre, positive away from the "
+             "vehicle's centre");
+    v.Number("coupler_height_m", coupler_height_m, kPositive, "height of the couplers above rail");
+    v.Group("wheel_rail", wheel_rail, "contact of one wheel with its rail; two per wheelset");
+    v.Group("adaptor_pad", adaptor_pad, "one of two axle-box adaptor pads per wheelset; the same in x and z");
+    v.Group("spring_nest", spring_nest, "a quarter of a bogie's springs");
+    v.Group("friction_wedge", friction_wedge, "one of four friction wedges per bogie; not given: no wedges");
+    v.Group("bolster_guide", bolster_guide, "longitudinal guide of the bolster in the frame");
+    v.Number("bolster_guide_height_m", bolster_guide_height_m, kPositive, "height of that guide above rail");
+    v.Group("centre_plate", centre_plate, "centre plate between carbody and bolster");
     v.Check(wheelsets_per_bogie == 3 || middle_wheelset_offset_m == 0.0, "middle_wheelset_offset_m",
             "belongs to wheelsets_per_bogie 3 only", {"wheelsets_per_bogie"});
     v.Check(std::abs(middle_wheelset_offset_m) < half_wheelset_spacing_m, "middle_wheelset_offset_m",

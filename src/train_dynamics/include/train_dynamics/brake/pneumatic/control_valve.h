@@ -18,46 +18,61 @@ enum class ControlValveKind {
 /// cylinders to 99 % in the published 16 s (3.2 mm: 11 s). The passages that take air from the pipe in an application are so
 /// small [A] that no row of them makes a fall that an emergency needs (with 3.2 and 1.0 mm the tail of 150 wagons does).
 struct DirectReleaseParams {
-  double apply_kpa = 5.2;                    ///< auxiliary reservoir above the pipe: auxiliary -> cylinder
-  double lap_kpa = 1.7;                      ///< ... no longer
-  double release_kpa = 12.0;                 ///< pipe above the auxiliary reservoir: cylinder -> atmosphere
-  double emergency_reservoir_l = 57.4;       ///< 3500 in3 [M]
-  double quick_service_volume_l = 0.6;       ///< takes air from the pipe at each first application [A]
-  double quick_service_kpa = 35.0;           ///< ... until it has this pressure [A]
-  double quick_service_opening_mm = 0.5;     ///< ... through this opening [A]
-  double minimum_cylinder_kpa = 70.0;        ///< of an application; the pipe's air fills up to it [M]
-  double limiting_opening_mm = 0.4;          ///< ... through this opening [A]
-  double emergency_opening_mm = 2.4;         ///< emergency reservoir -> cylinder [A, see above]
-  double vent_opening_mm = 6.35;             ///< pipe -> atmosphere in an emergency
-  double quick_action_time_s = 0.6;          ///< tau_q [A]
-  double quick_action_threshold_kpa = 20.0;  ///< d_em [A]
-  double vent_closes_below_kpa = 50.0;       ///< pressure of the pipe ...
-  double vent_time_s = 60.0;                 ///< ... and the time before which the vent does not close
-  bool accelerated_release =
-      false;  ///< after an emergency: cylinder and auxiliary -> pipe, once that has been charged
-              ///< to accelerated_release_kpa
-  double accelerated_release_kpa = 140.0;  ///< 20 psi [M]
+  double apply_kpa = 5.2;
+  double lap_kpa = 1.7;
+  double release_kpa = 12.0;
+  double emergency_reservoir_l = 57.4;
+  double quick_service_volume_l = 0.6;
+  double quick_service_kpa = 35.0;
+  double quick_service_opening_mm = 0.5;
+  double minimum_cylinder_kpa = 70.0;
+  double limiting_opening_mm = 0.4;
+  double emergency_opening_mm = 2.4;
+  double vent_opening_mm = 6.35;
+  double quick_action_time_s = 0.6;
+  double quick_action_threshold_kpa = 20.0;
+  double vent_closes_below_kpa = 50.0;
+  double vent_time_s = 60.0;
+  bool accelerated_release = false;
+  double accelerated_release_kpa = 140.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("apply_kpa", apply_kpa, Range{0.5, 50.0, false, false});
-    v.Number("lap_kpa", lap_kpa, Range{0.0, 50.0, false, false});
-    v.Number("release_kpa", release_kpa, Range{0.5, 100.0, false, false});
-    v.Number("emergency_reservoir_l", emergency_reservoir_l, Range{1.0, 1000.0, false, false});
-    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false});
-    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false});
-    v.Number("quick_service_opening_mm", quick_service_opening_mm, Range{0.1, 10.0, false, false});
-    v.Number("minimum_cylinder_kpa", minimum_cylinder_kpa, Range{0.0, 200.0, false, false});
-    v.Number("limiting_opening_mm", limiting_opening_mm, Range{0.0, 5.0, false, false});
-    v.Number("emergency_opening_mm", emergency_opening_mm, Range{0.5, 25.0, false, false});
-    v.Number("vent_opening_mm", vent_opening_mm, Range{0.0, 30.0, false, false});
-    v.Number("quick_action_time_s", quick_action_time_s, Range{0.05, 10.0, false, false});
-    v.Number("quick_action_threshold_kpa", quick_action_threshold_kpa, Range{1.0, 200.0, false, false});
-    v.Number("vent_closes_below_kpa", vent_closes_below_kpa, Range{0.0, 300.0, false, false});
-    v.Number("vent_time_s", vent_time_s, kNonNegative);
-    v.Flag("accelerated_release", accelerated_release);
+    v.Number("apply_kpa", apply_kpa, Range{0.5, 50.0, false, false},
+             "auxiliary reservoir above the pipe from which the valve fills the cylinder");
+    v.Number("lap_kpa", lap_kpa, Range{0.0, 50.0, false, false},
+             "auxiliary reservoir above the pipe below which it ends that");
+    v.Number("release_kpa", release_kpa, Range{0.5, 100.0, false, false},
+             "pipe above the auxiliary reservoir from which the valve releases");
+    v.Number("emergency_reservoir_l", emergency_reservoir_l, Range{1.0, 1000.0, false, false},
+             "volume of the emergency reservoir: 3500 in3 [M]");
+    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false},
+             "volume that takes air from the pipe at each first application [A]");
+    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false},
+             "pressure of that volume at which it takes no more [A]");
+    v.Number("quick_service_opening_mm", quick_service_opening_mm, Range{0.1, 10.0, false, false},
+             "opening through which it takes it [A]");
+    v.Number("minimum_cylinder_kpa", minimum_cylinder_kpa, Range{0.0, 200.0, false, false},
+             "cylinder pressure up to which an application fills from the pipe [M]");
+    v.Number("limiting_opening_mm", limiting_opening_mm, Range{0.0, 5.0, false, false},
+             "opening through which it does [A]");
+    v.Number("emergency_opening_mm", emergency_opening_mm, Range{0.5, 25.0, false, false},
+             "opening from the emergency reservoir to the cylinder [A]");
+    v.Number("vent_opening_mm", vent_opening_mm, Range{0.0, 30.0, false, false},
+             "opening from the pipe to the atmosphere in an emergency");
+    v.Number("quick_action_time_s", quick_action_time_s, Range{0.05, 10.0, false, false},
+             "tau_q, time constant of the chamber that follows the pipe [A]");
+    v.Number("quick_action_threshold_kpa", quick_action_threshold_kpa, Range{1.0, 200.0, false, false},
+             "d_em, lead of that chamber over the pipe that begins an emergency [A]");
+    v.Number("vent_closes_below_kpa", vent_closes_below_kpa, Range{0.0, 300.0, false, false},
+             "pressure of the pipe below which the vent of an emergency may close");
+    v.Number("vent_time_s", vent_time_s, kNonNegative, "time before which it does not close");
+    v.Flag("accelerated_release", accelerated_release,
+           "after an emergency, cylinder and auxiliary reservoir feed the pipe once it has been charged to "
+           "accelerated_release_kpa");
     if (accelerated_release)
-      v.Number("accelerated_release_kpa", accelerated_release_kpa, Range{10.0, 500.0, false, false});
+      v.Number("accelerated_release_kpa", accelerated_release_kpa, Range{10.0, 500.0, false, false},
+               "pressure of the pipe at which that begins: 20 psi [M]");
     v.Check(lap_kpa < apply_kpa, "lap_kpa", "must be below apply_kpa", {"apply_kpa"});
   }
 };
@@ -74,25 +89,34 @@ struct DirectReleaseParams {
 struct GraduatedReleaseParams {
   double ratio = 3.8 / 1.5;
   double maximum_cylinder_kpa = 380.0;
-  double fill_time_s = 4.0;      ///< P: 3 to 5 s; G: 18 to 30 s
-  double release_time_s = 17.5;  ///< from 95 % to 40 kPa; P: 15 to 20 s; G: 45 to 60 s
+  double fill_time_s = 4.0;
+  double release_time_s = 17.5;
   double insensitivity_kpa = 15.0;
   double release_kpa = 5.0;
   double control_time_s = 20.0;
-  double quick_service_volume_l = 0.6;  ///< accelerating chamber
+  double quick_service_volume_l = 0.6;
   double quick_service_kpa = 35.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("ratio", ratio, Range{0.5, 10.0, false, false});
-    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false});
-    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false});
-    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false});
-    v.Number("insensitivity_kpa", insensitivity_kpa, Range{1.0, 60.0, false, false});
-    v.Number("release_kpa", release_kpa, Range{0.5, 60.0, false, false});
-    v.Number("control_time_s", control_time_s, Range{1.0, 1000.0, false, false});
-    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false});
-    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false});
+    v.Number("ratio", ratio, Range{0.5, 10.0, false, false},
+             "k, cylinder pressure over the fall of the pipe");
+    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false},
+             "p_max, largest cylinder pressure");
+    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false},
+             "to 95 % of the goal; P: 3 to 5 s; G: 18 to 30 s");
+    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false},
+             "from 95 % to 40 kPa; P: 15 to 20 s; G: 45 to 60 s");
+    v.Number("insensitivity_kpa", insensitivity_kpa, Range{1.0, 60.0, false, false},
+             "fall of the pipe below the control reservoir from which the brake applies");
+    v.Number("release_kpa", release_kpa, Range{0.5, 60.0, false, false},
+             "fall of the pipe below the control reservoir under which the brake releases");
+    v.Number("control_time_s", control_time_s, Range{1.0, 1000.0, false, false},
+             "time constant with which pipe and control reservoir equalise while released");
+    v.Number("quick_service_volume_l", quick_service_volume_l, Range{0.0, 10.0, false, false},
+             "volume of the accelerating chamber, which takes air from the pipe");
+    v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false},
+             "pressure of that chamber at which it takes no more");
     v.Check(release_kpa < insensitivity_kpa, "release_kpa", "must be below insensitivity_kpa",
             {"insensitivity_kpa"});
   }
@@ -102,20 +126,24 @@ struct GraduatedReleaseParams {
 /// as a distributor's does, with the times below. A pipe below emergency_pipe_kpa is an emergency, whatever is sent.
 struct EcpParams {
   double maximum_cylinder_kpa = 430.0;
-  double delay_s = 0.2;              ///< from the driver's command to the valve [A]
-  double fill_time_s = 10.0;         ///< to 95 % of the goal [A]
-  double emergency_fill_time_s = 8;  ///< [A]
+  double delay_s = 0.2;
+  double fill_time_s = 10.0;
+  double emergency_fill_time_s = 8;
   double release_time_s = 15.0;
-  double emergency_pipe_kpa = 345.0;  ///< 50 psi [M]
+  double emergency_pipe_kpa = 345.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false});
-    v.Number("delay_s", delay_s, Range{0.0, 10.0, false, false});
-    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false});
-    v.Number("emergency_fill_time_s", emergency_fill_time_s, Range{0.5, 100.0, false, false});
-    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false});
-    v.Number("emergency_pipe_kpa", emergency_pipe_kpa, Range{0.0, 1000.0, false, false});
+    v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false},
+             "cylinder pressure of a full application");
+    v.Number("delay_s", delay_s, Range{0.0, 10.0, false, false},
+             "from the driver's command to the valve [A]");
+    v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false}, "to 95 % of the goal [A]");
+    v.Number("emergency_fill_time_s", emergency_fill_time_s, Range{0.5, 100.0, false, false},
+             "the same in an emergency [A]");
+    v.Number("release_time_s", release_time_s, Range{0.5, 200.0, false, false}, "from 95 % to 40 kPa");
+    v.Number("emergency_pipe_kpa", emergency_pipe_kpa, Range{0.0, 1000.0, false, false},
+             "pressure of the pipe below which there is an emergency, whatever is sent: 50 psi [M]");
   }
 };
 
@@ -123,38 +151,48 @@ struct EcpParams {
 struct ControlValveParams {
   std::string name;
   ControlValveKind kind = ControlValveKind::kDirectRelease;
-  double auxiliary_reservoir_l = 41.0;  ///< 2500 in3 [S]
-  double cylinder_l = 16.4;  ///< cylinder, clearance and piping at working travel, as fixed: 41.0 / 2.5 [A]
-  double charging_opening_mm = 3.2;  ///< pipe -> reservoirs, with check valve
-  double application_opening_mm =
-      2.4;                          ///< auxiliary reservoir -> cylinder; direct release only [A, see above]
-  double exhaust_opening_mm = 3.2;  ///< cylinder -> atmosphere; direct release only [A]
+  double auxiliary_reservoir_l = 41.0;
+  double cylinder_l = 16.4;
+  double charging_opening_mm = 3.2;
+  double application_opening_mm = 2.4;
+  double exhaust_opening_mm = 3.2;
   double cylinder_leakage_kpa_per_min = 0.0;
-  double ep_vent_opening_mm = 0.0;  ///< electro-pneumatic assistance: each vehicle vents its pipe; 0: none
+  double ep_vent_opening_mm = 0.0;
   DirectReleaseParams direct;
   GraduatedReleaseParams graduated;
   EcpParams ecp;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
+    v.Text("name", name, "name by which equipment chooses the valve");
     v.Choice("kind", kind,
              {{"direct_release", ControlValveKind::kDirectRelease},
               {"graduated_release", ControlValveKind::kGraduatedRelease},
-              {"ecp", ControlValveKind::kEcp}});
-    v.Number("auxiliary_reservoir_l", auxiliary_reservoir_l, Range{1.0, 1000.0, false, false});
-    v.Number("cylinder_l", cylinder_l, Range{0.5, 200.0, false, false});
-    v.Number("charging_opening_mm", charging_opening_mm, Range{0.5, 25.0, false, false});
-    v.Number("cylinder_leakage_kpa_per_min", cylinder_leakage_kpa_per_min, Range{0.0, 1000.0, false, false});
+              {"ecp", ControlValveKind::kEcp}},
+             "direct_release: AAR AB type, a rise of the pipe releases fully; graduated_release: UIC "
+             "distributor; ecp: electronically controlled, the pipe only feeds");
+    v.Number("auxiliary_reservoir_l", auxiliary_reservoir_l, Range{1.0, 1000.0, false, false},
+             "volume of the auxiliary reservoir: 2500 in3 [S]");
+    v.Number("cylinder_l", cylinder_l, Range{0.5, 200.0, false, false},
+             "volume of cylinder, clearance and piping at working travel, constant: 41.0 / 2.5 [A]");
+    v.Number("charging_opening_mm", charging_opening_mm, Range{0.5, 25.0, false, false},
+             "opening from the pipe to the reservoirs, with check valve");
+    v.Number("cylinder_leakage_kpa_per_min", cylinder_leakage_kpa_per_min, Range{0.0, 1000.0, false, false},
+             "fall of the cylinder's pressure by leakage");
     if (kind == ControlValveKind::kDirectRelease) {
-      v.Number("application_opening_mm", application_opening_mm, Range{0.5, 25.0, false, false});
-      v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{0.5, 25.0, false, false});
-      v.Group("direct", direct);
+      v.Number("application_opening_mm", application_opening_mm, Range{0.5, 25.0, false, false},
+               "opening from the auxiliary reservoir to the cylinder [A]");
+      v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{0.5, 25.0, false, false},
+               "opening from the cylinder to the atmosphere [A]");
+      v.Group("direct", direct, "thresholds and chambers of direct release");
     }
-    if (kind == ControlValveKind::kGraduatedRelease) v.Group("graduated", graduated);
-    if (kind == ControlValveKind::kEcp) v.Group("ecp", ecp);
+    if (kind == ControlValveKind::kGraduatedRelease)
+      v.Group("graduated", graduated, "thresholds and times of graduated release");
+    if (kind == ControlValveKind::kEcp)
+      v.Group("ecp", ecp, "times and pressures of the electronically controlled brake");
     if (kind != ControlValveKind::kEcp)
-      v.Number("ep_vent_opening_mm", ep_vent_opening_mm, Range{0.0, 10.0, false, false});
+      v.Number("ep_vent_opening_mm", ep_vent_opening_mm, Range{0.0, 10.0, false, false},
+               "electro-pneumatic assistance: opening through which each vehicle vents its pipe; 0: none");
   }
 };
 

@@ -17,52 +17,67 @@ namespace train_dynamics {
 
 /// The brake pipe of a train.
 struct TrainPipeParams {
-  double inner_diameter_mm = 31.75;  ///< 1.25 in, AAR [S]; 32 mm UIC
-  double length_ratio = 1.10;        ///< length of the pipe over that of the vehicle [S]
-  double branch_volume_l = 0.9;      ///< of each vehicle [A]
+  double inner_diameter_mm = 31.75;
+  double length_ratio = 1.10;
+  double branch_volume_l = 0.9;
   double temperature_k = 293.15;
-  double leakage_g_per_s_km =
-      0.0;  ///< from the charged pipe, per km of it; proportional to the gauge pressure
+  double leakage_g_per_s_km = 0.0;
   int cells_per_vehicle = 2;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("inner_diameter_mm", inner_diameter_mm, Range{20.0, 50.0, false, false});
-    v.Number("length_ratio", length_ratio, Range{1.0, 1.3, false, false});
-    v.Number("branch_volume_l", branch_volume_l, Range{0.0, 20.0, false, false});
-    v.Number("temperature_k", temperature_k, Range{223.0, 323.0, false, false});
-    v.Number("leakage_g_per_s_km", leakage_g_per_s_km, Range{0.0, 1000.0, false, false});
-    v.Integer("cells_per_vehicle", cells_per_vehicle, Range{1, 1000, false, false});
+    v.Number("inner_diameter_mm", inner_diameter_mm, Range{20.0, 50.0, false, false},
+             "inner diameter of the brake pipe: 1.25 in, AAR [S]; 32 mm UIC");
+    v.Number("length_ratio", length_ratio, Range{1.0, 1.3, false, false},
+             "length of the pipe over that of the vehicle [S]");
+    v.Number("branch_volume_l", branch_volume_l, Range{0.0, 20.0, false, false},
+             "volume of the branch pipe of each vehicle [A]");
+    v.Number("temperature_k", temperature_k, Range{223.0, 323.0, false, false},
+             "temperature of the air, constant");
+    v.Number("leakage_g_per_s_km", leakage_g_per_s_km, Range{0.0, 1000.0, false, false},
+             "leakage of the charged pipe per km of it; proportional to the gauge pressure");
+    v.Integer("cells_per_vehicle", cells_per_vehicle, Range{1, 1000, false, false},
+              "number of volumes by which each vehicle's pipe is computed");
   }
 };
 
 /// The driver's valve, and that of every remote locomotive.
 struct DriversValveParams {
-  double service_rate_kpa_per_s = 20.0;       ///< at which the equalising reservoir falls
-  double full_service_reduction_kpa = 170.0;  ///< what ECP and electro-pneumatic goals are shares of
-  double main_reservoir_kpa = 900.0;          ///< constant: the compressors keep up [A]
-  double charging_opening_mm = 19.0;          ///< [A]
-  double exhaust_opening_mm = 25.0;           ///< service; [A]
-  double emergency_opening_mm = 25.0;         ///< [A]
-  double blocking_time_s = 60.0;              ///< for which nothing ends an emergency [A]
-  bool pressure_maintaining = true;           ///< an applied brake's pipe is fed against leakage
-  double overcharge_kpa = 0.0;                ///< of the pipe at a release
+  double service_rate_kpa_per_s = 20.0;
+  double full_service_reduction_kpa = 170.0;
+  double main_reservoir_kpa = 900.0;
+  double charging_opening_mm = 19.0;
+  double exhaust_opening_mm = 25.0;
+  double emergency_opening_mm = 25.0;
+  double blocking_time_s = 60.0;
+  bool pressure_maintaining = true;
+  double overcharge_kpa = 0.0;
   double overcharge_time_s = 10.0;
   double overcharge_decay_kpa_per_s = 0.3;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("service_rate_kpa_per_s", service_rate_kpa_per_s, Range{10.0, 40.0, false, false});
-    v.Number("full_service_reduction_kpa", full_service_reduction_kpa, Range{50.0, 400.0, false, false});
-    v.Number("main_reservoir_kpa", main_reservoir_kpa, Range{300.0, 1200.0, false, false});
-    v.Number("charging_opening_mm", charging_opening_mm, Range{1.0, 40.0, false, false});
-    v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{1.0, 40.0, false, false});
-    v.Number("emergency_opening_mm", emergency_opening_mm, Range{15.0, 32.0, false, false});
-    v.Number("blocking_time_s", blocking_time_s, kNonNegative);
-    v.Flag("pressure_maintaining", pressure_maintaining);
-    v.Number("overcharge_kpa", overcharge_kpa, Range{0.0, 100.0, false, false});
-    v.Number("overcharge_time_s", overcharge_time_s, kNonNegative);
-    v.Number("overcharge_decay_kpa_per_s", overcharge_decay_kpa_per_s, Range{0.01, 10.0, false, false});
+    v.Number("service_rate_kpa_per_s", service_rate_kpa_per_s, Range{10.0, 40.0, false, false},
+             "rate at which the equalising reservoir falls in a service application");
+    v.Number("full_service_reduction_kpa", full_service_reduction_kpa, Range{50.0, 400.0, false, false},
+             "reduction of full service, of which ECP and electro-pneumatic goals are shares");
+    v.Number("main_reservoir_kpa", main_reservoir_kpa, Range{300.0, 1200.0, false, false},
+             "pressure of the main reservoir, constant: the compressors keep up [A]");
+    v.Number("charging_opening_mm", charging_opening_mm, Range{1.0, 40.0, false, false},
+             "opening through which the pipe is charged [A]");
+    v.Number("exhaust_opening_mm", exhaust_opening_mm, Range{1.0, 40.0, false, false},
+             "opening through which a service application vents the pipe [A]");
+    v.Number("emergency_opening_mm", emergency_opening_mm, Range{15.0, 32.0, false, false},
+             "opening through which an emergency vents the pipe [A]");
+    v.Number("blocking_time_s", blocking_time_s, kNonNegative,
+             "time for which nothing ends an emergency [A]");
+    v.Flag("pressure_maintaining", pressure_maintaining,
+           "whether an applied brake's pipe is fed against leakage");
+    v.Number("overcharge_kpa", overcharge_kpa, Range{0.0, 100.0, false, false},
+             "pressure above the charged one that a release gives the pipe");
+    v.Number("overcharge_time_s", overcharge_time_s, kNonNegative, "how long it holds");
+    v.Number("overcharge_decay_kpa_per_s", overcharge_decay_kpa_per_s, Range{0.01, 10.0, false, false},
+             "rate at which it then falls");
   }
 };
 
@@ -71,35 +86,41 @@ enum class PipeSourceKind { kDriver, kRemote, kEndOfTrain };
 /// A place where the pipe is charged and vented.
 struct PipeSourceParams {
   std::string name;
-  int vehicle = 1;  ///< 1 = the first; -1 = the last
+  int vehicle = 1;
   PipeSourceKind kind = PipeSourceKind::kDriver;
   double radio_delay_s = 0.0;
-  bool two_way = true;             ///< an end-of-train device that vents in an emergency; else it only tells
-  double opening_mm = 19.0;        ///< of an end-of-train device [A]
-  double radio_lost_from_s = 1e9;  ///< commands given from here ...
-  double radio_lost_to_s =
-      1e9;  ///< ... to here do not arrive; a remote locomotive's valve laps 45 s later [A]
-  std::vector<BrakeCommand>
-      commands;  ///< of this locomotive alone, in place of the driver's: independent control
+  bool two_way = true;
+  double opening_mm = 19.0;
+  double radio_lost_from_s = 1e9;
+  double radio_lost_to_s = 1e9;
+  std::vector<BrakeCommand> commands;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Text("name", name);
-    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false});
+    v.Text("name", name, "name of the source, for people");
+    v.Integer("vehicle", vehicle, Range{-100000, 100000, false, false},
+              "vehicle that has the source: 1 the first, -1 the last");
     v.Choice("kind", kind,
              {{"driver", PipeSourceKind::kDriver},
               {"remote", PipeSourceKind::kRemote},
-              {"end_of_train", PipeSourceKind::kEndOfTrain}});
+              {"end_of_train", PipeSourceKind::kEndOfTrain}},
+             "driver: the leading locomotive; remote: a locomotive by radio (distributed power); "
+             "end_of_train: a device that vents in an emergency");
     if (kind != PipeSourceKind::kDriver) {
-      v.Number("radio_delay_s", radio_delay_s, Range{0.0, 600.0, false, false});
-      v.Number("radio_lost_from_s", radio_lost_from_s, kNonNegative);
-      v.Number("radio_lost_to_s", radio_lost_to_s, kNonNegative);
+      v.Number("radio_delay_s", radio_delay_s, Range{0.0, 600.0, false, false},
+               "from the driver's command to its arrival here");
+      v.Number("radio_lost_from_s", radio_lost_from_s, kNonNegative,
+               "commands given from here on, up to radio_lost_to_s, do not arrive");
+      v.Number("radio_lost_to_s", radio_lost_to_s, kNonNegative,
+               "end of the loss of radio; a remote locomotive's valve laps 45 s after its beginning [A]");
     }
     if (kind == PipeSourceKind::kEndOfTrain) {
-      v.Flag("two_way", two_way);
-      v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false});
+      v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only tells");
+      v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false}, "opening of the device's vent [A]");
     }
-    if (kind == PipeSourceKind::kRemote) v.List("commands", commands);
+    if (kind == PipeSourceKind::kRemote)
+      v.List("commands", commands,
+             "commands of this locomotive alone, in place of the driver's: independent control");
     v.Check(vehicle != 0, "vehicle", "must count from 1, or from -1 for the last");
   }
 };
@@ -108,35 +129,40 @@ enum class EmptyLoad { kNone, kTwoStep, kProportional };
 
 /// What some vehicles have that others have not.
 struct BrakeEquipmentParams {
-  int from = kRequiredInteger;  ///< vehicle, from 1; or from -1 for the last
+  int from = kRequiredInteger;
   int to = kRequiredInteger;
-  std::string valve;  ///< name of one of `valves`; empty: the first
+  std::string valve;
   bool cut_out = false;
   Retainer retainer = Retainer::kDirect;
   EmptyLoad empty_load = EmptyLoad::kNone;
-  double load_share = 1.0;   ///< of the full load
-  double empty_ratio = 0.5;  ///< of the cylinder's pressure, empty over loaded
-  /// Below this share of the load a two-step device is set to empty.
+  double load_share = 1.0;
+  double empty_ratio = 0.5;
   double change_over_share = 0.4;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Integer("from", from, Range{-100000, 100000, false, false});
-    v.Integer("to", to, Range{-100000, 100000, false, false});
-    v.Text("valve", valve);
-    v.Flag("cut_out", cut_out);
+    v.Integer("from", from, Range{-100000, 100000, false, false},
+              "first vehicle, from 1; or from -1 for the last");
+    v.Integer("to", to, Range{-100000, 100000, false, false}, "last vehicle, likewise");
+    v.Text("valve", valve, "name of one of valves; not given: the first");
+    v.Flag("cut_out", cut_out, "the vehicles' valves are cut out");
     v.Choice("retainer", retainer,
              {{"direct", Retainer::kDirect},
               {"high_pressure", Retainer::kHighPressure},
               {"low_pressure", Retainer::kLowPressure},
-              {"slow_direct", Retainer::kSlowDirect}});
+              {"slow_direct", Retainer::kSlowDirect}},
+             "retaining valve: direct: open; high_pressure, low_pressure: keep pressure in the cylinder; "
+             "slow_direct: releases slowly");
     v.Choice("empty_load", empty_load,
              {{"none", EmptyLoad::kNone},
               {"two_step", EmptyLoad::kTwoStep},
-              {"proportional", EmptyLoad::kProportional}});
-    v.Number("load_share", load_share, kFraction);
-    v.Number("empty_ratio", empty_ratio, Range{0.1, 1.0, false, false});
-    v.Number("change_over_share", change_over_share, kFraction);
+              {"proportional", EmptyLoad::kProportional}},
+             "none; two_step: empty_ratio below change_over_share of the load; proportional: with the load");
+    v.Number("load_share", load_share, kFraction, "how much of the full load the vehicles carry");
+    v.Number("empty_ratio", empty_ratio, Range{0.1, 1.0, false, false},
+             "cylinder's pressure, empty over loaded");
+    v.Number("change_over_share", change_over_share, kFraction,
+             "share of the load below which a two_step device is set to empty");
   }
   /// Of the cylinder's pressure, what acts on the shoes.
   double PressureShare() const;
@@ -149,34 +175,39 @@ struct PartedHoseParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Integer("behind_vehicle", behind_vehicle, Range{1, 100000, false, false});
-    v.Number("time_s", time_s, kNonNegative);
+    v.Integer("behind_vehicle", behind_vehicle, Range{1, 100000, false, false},
+              "vehicle behind which the hose parts, from 1");
+    v.Number("time_s", time_s, kNonNegative, "when it parts");
   }
 };
 
 /// The air brake of a train as a machine. Pressures are gauge.
 struct PneumaticBrakeParams {
   double charged_pressure_kpa = 600.0;
-  std::optional<double> initial_pressure_kpa;  ///< of pipe and reservoirs; else charged
+  std::optional<double> initial_pressure_kpa;
   TrainPipeParams pipe;
   DriversValveParams drivers_valve;
   std::vector<PipeSourceParams> sources{PipeSourceParams{}};
   std::vector<ControlValveParams> valves{ControlValveParams{}};
   std::vector<BrakeEquipmentParams> equipment;
-  std::vector<int> closed_angle_cocks;  ///< behind these vehicles
+  std::vector<int> closed_angle_cocks;
   std::vector<PartedHoseParams> parted_hoses;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("charged_pressure_kpa", charged_pressure_kpa, Range{300.0, 1000.0, false, false});
-    v.Number("initial_pressure_kpa", initial_pressure_kpa, Range{0.0, 1000.0, false, false});
-    v.Group("pipe", pipe);
-    v.Group("drivers_valve", drivers_valve);
-    v.List("sources", sources);
-    v.List("valves", valves);
-    v.List("equipment", equipment);
-    v.Integers("closed_angle_cocks", closed_angle_cocks, Range{1, 100000, false, false});
-    v.List("parted_hoses", parted_hoses);
+    v.Number("charged_pressure_kpa", charged_pressure_kpa, Range{300.0, 1000.0, false, false},
+             "gauge pressure of the charged brake pipe");
+    v.Number("initial_pressure_kpa", initial_pressure_kpa, Range{0.0, 1000.0, false, false},
+             "pressure of pipe and reservoirs at time 0; not given: charged");
+    v.Group("pipe", pipe, "the brake pipe of the train");
+    v.Group("drivers_valve", drivers_valve, "the driver's valve, and that of every remote locomotive");
+    v.List("sources", sources, "places where the pipe is charged and vented; the first is of kind driver");
+    v.List("valves", valves,
+           "control valves of the vehicles; the first is that of all for which equipment names none");
+    v.List("equipment", equipment, "what some vehicles have that others have not");
+    v.Integers("closed_angle_cocks", closed_angle_cocks, Range{1, 100000, false, false},
+               "vehicles behind which an angle cock of the pipe is closed, from 1");
+    v.List("parted_hoses", parted_hoses, "hoses that part");
     v.Check(drivers_valve.main_reservoir_kpa >= charged_pressure_kpa + drivers_valve.overcharge_kpa,
             "drivers_valve.main_reservoir_kpa", "must be at least charged_pressure_kpa and the overcharge",
             {"charged_pressure_kpa"});
