@@ -438,7 +438,7 @@ class Full(Matrix):
         launch.saw(THE_END, SOON)
         self.signal(signal.SIGKILL)
         self.assert_same(launch)
-        self.note("-", "nobody minds")
+        self.note("-", "no effect")
 
     @cell("kill -9 of a wagon node", "mid-run, on_lost_node:=stop")
     def test_kill_and_stop(self):
@@ -470,7 +470,7 @@ class Full(Matrix):
         self.assert_same(launch)
         self.assertEqual(3, launch.log().count(" is back after "))
 
-    @cell("kill -9 of a wagon node", "mid-run, nobody respawns it")
+    @cell("kill -9 of a wagon node", "mid-run, not respawned")
     def test_kill_in_vain(self):
         launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), recovery_timeout_s=2)
         launch.saw(A_QUARTER, SOON)
@@ -715,7 +715,7 @@ class Full(Matrix):
         time.sleep(3)
         self.signal(signal.SIGCONT, "master")
         self.assert_same(launch)
-        self.note("-", "nobody minds, same bits")
+        self.note("-", "no effect, same bits")
 
     @cell("SIGSTOP of the master, later SIGCONT", "mid-run, for longer than exchange_timeout")
     def test_stop_master(self):
@@ -725,7 +725,7 @@ class Full(Matrix):
         time.sleep(3)
         self.signal(signal.SIGCONT, "master")
         self.assert_same(launch)
-        self.note("-", "nobody minds, same bits")
+        self.note("-", "no effect, same bits")
 
     @cell("another master", "mid-run")
     def test_other_master(self):

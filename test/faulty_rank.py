@@ -41,7 +41,7 @@ class FaultyRank:
         rospy.Service("~configure", OtherConfigure if fault == "md5sum" else Configure, self.on_configure)
 
     def announce(self):
-        """For whoever measures how long it takes until it is noticed."""
+        """For tests that measure how long it takes until it is noticed."""
         print("the fault:", self.fault, flush=True)
 
     def on_configure(self, request):

@@ -236,7 +236,7 @@ class WagonServices(unittest.TestCase):
         connection, _ = self.connect()
         connection.sendall(b"\xff\xff\xff\xff")  # a request of 4 GiB
         self.assertEqual(b"", connection.recv(1))
-        silent, _ = self.connect()  # and stays: nobody waits for it
+        silent, _ = self.connect()  # and stays: no call waits for it
         self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
 
     def test_whoever_does_not_read_replies_holds_up_nobody_else(self):

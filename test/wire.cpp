@@ -283,7 +283,7 @@ TEST_P(LostAndFound, TheOthersReplyAndReplacementsTakeOver) {
   EXPECT_NE(lost.at(0), "");
   EXPECT_EQ(lost.at(1), "no reply within 1.5 s");
 
-  // The stopped one wakes up, and replies to nobody.
+  // The stopped one wakes up, and its reply goes nowhere.
   process_[1]->Signal(SIGCONT);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_EQ(Exchange(2).size(), 2u);  // those who are not connected stay lost

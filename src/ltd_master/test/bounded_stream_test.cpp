@@ -61,7 +61,7 @@ TEST(BoundedStream, RefusesWhatIsCutShortOrTooLong) {
 }
 
 TEST(BoundedStream, TakesNoMemoryForElementsThatAreNotThere) {
-  // 2^29 + 1 numbers of 8 bytes: 4 GiB, or 8 bytes for whoever counts them in 32 bits.
+  // 2^29 + 1 numbers of 8 bytes: 4 GiB, or 8 bytes if counted in 32 bits.
   const std::uint32_t count = (1u << 29) + 1;
   std::vector<double> numbers;
   Bytes bytes = BytesOf(count);

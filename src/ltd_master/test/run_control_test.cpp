@@ -22,7 +22,7 @@ double RunUntil(RunControl& control, double begin_s, double end_s) {
   return Seconds(steady_clock::now() - begin);
 }
 
-// Lower bounds only: how long a busy machine takes is nobody's law. The last exchange begins 1 ms before the end.
+// Lower bounds only: a busy machine may take any time. The last exchange begins 1 ms before the end.
 
 TEST(RunControl, KeepsToTheRealTimeFactor) {
   RunControl control(false, 2.0);

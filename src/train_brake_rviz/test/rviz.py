@@ -149,7 +149,7 @@ class Rviz(unittest.TestCase):
         self.assertEqual(RunStatus.RUNNING, status.state)
         self.assertNotIn("could not be loaded", self.log.read_text())  # the panel
 
-        # Whoever closes rviz ends the launch; the run is kept as interrupted.
+        # Closing rviz ends the launch; the run is kept as interrupted.
         _, _, services = rosgraph.Master("/rviz_test").getSystemState()
         rviz = {node for _, nodes in services for node in nodes if node.startswith("/train/rviz")}
         self.assertEqual(1, len(rviz))
@@ -157,7 +157,7 @@ class Rviz(unittest.TestCase):
         self.assertEqual(130, self.launch.wait(60), self.log.read_text())
 
     def keep(self, picture):
-        """What was seen, for whoever wonders why the test failed."""
+        """What was seen, to explain a failure."""
         folder = os.environ.get("TRAIN_BRAKE_SCREENSHOTS")
         if folder:
             picture.save(pathlib.Path(folder) / "rviz.png")

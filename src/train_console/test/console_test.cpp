@@ -29,7 +29,7 @@ void Redirect(int descriptor, const char* file) {
   close(opened);
 }
 
-/// Makes the descriptor the end of a pipe that nobody reads.
+/// Makes the descriptor the end of a pipe without a reader.
 void Break(int descriptor) {
   int ends[2];
   if (pipe(ends) != 0) _exit(100);
@@ -50,7 +50,7 @@ TEST(ConsoleTest, MessageToABrokenPipeIsLost) {
   EXPECT_EQ(0, Ends([] {
               PrepareProcess();
               Break(STDERR_FILENO);
-              Tell("nobody reads this\n");
+              Tell("this has no reader\n");
               return 0;
             }));
 }
@@ -58,7 +58,7 @@ TEST(ConsoleTest, MessageToABrokenPipeIsLost) {
 TEST(ConsoleTest, WithoutPreparationABrokenPipeEndsTheProcess) {
   EXPECT_EQ(-SIGPIPE, Ends([] {
     Break(STDERR_FILENO);
-    Tell("nobody reads this\n");
+    Tell("this has no reader\n");
     return 0;
   }));
 }

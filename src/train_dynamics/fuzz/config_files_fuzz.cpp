@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     train_dynamics::config::LoadScenario(file, Split(sections[0], '\n'));
   } catch (const strict_config::Error& error) {
-    train_brake_build::fuzz::Require(*error.what() != '\0', "whoever complains has something to say");
+    train_brake_build::fuzz::Require(*error.what() != '\0', "an error has a text");
   }
   return 0;
 }

@@ -39,8 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace train_dynamics;
   strict_config::ErrorList errors;
   const ScenarioParams scenario = Read({reinterpret_cast<const char*>(data), size}, errors);
-  train_brake_build::fuzz::Require(errors.empty() == errors.Text().empty(),
-                                   "whoever complains has something to say");
+  train_brake_build::fuzz::Require(errors.empty() == errors.Text().empty(), "an error has a text");
   if (!errors.empty()) return 0;
 
   const std::string written = strict_config::Write(scenario);

@@ -209,7 +209,7 @@ std::vector<double> ArgumentsOfEveryKind() {
   return numbers;
 }
 
-// Two NaN count as the same: their sign and payload are nobody's promise.
+// Two NaN count as the same: no standard fixes their sign and payload.
 bool SameBits(double a, double b) { return ToBits(a) == ToBits(b) || (std::isnan(a) && std::isnan(b)); }
 
 // Calls an operation of two numbers in lanes and one by one. The second number is the first of another place.

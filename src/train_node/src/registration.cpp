@@ -107,7 +107,7 @@ void RegistrationWatch::Look() {
   if (!ros::master::check()) {
     if (!std::exchange(is_master_gone_, true)) {
       ROS_WARN(
-          "the ROS master at %s is gone: the run goes on, but nobody who comes now finds its topics and "
+          "the ROS master at %s is gone: the run goes on, but new nodes do not find its topics and "
           "services",
           ros::master::getURI().c_str());
     }

@@ -17,7 +17,7 @@ void InitWithWallTime(int argc, char** argv, const std::string& name, std::uint3
   train_console::PrepareProcess();
   std::vector<char*> arguments(argv, argv + argc);
   static char wall_time[] =
-      "/use_sim_time:=/nodes_of_the_train_use_wall_time";  // a parameter that nobody sets
+      "/use_sim_time:=/nodes_of_the_train_use_wall_time";  // a parameter that is never set
   arguments.push_back(wall_time);
   int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       while (topic != nullptr && !topic->done()) topic->Advance();
     }
   } catch (const train_results::UnreadableBag& e) {
-    train_brake_build::fuzz::Require(*e.what() != '\0', "whoever complains has something to say");
+    train_brake_build::fuzz::Require(*e.what() != '\0', "an error has a text");
   }
   return 0;
 }

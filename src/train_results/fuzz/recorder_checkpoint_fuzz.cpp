@@ -33,7 +33,7 @@ std::map<fs::path, std::string> FilesBelow(const fs::path& folder) {
   return files;
 }
 
-/// A run of two wagons, both in detail, in a folder; beside it a file that is nobody's business.
+/// A run of two wagons, both in detail, in a folder; beside it a file that does not belong to the run.
 struct Recorded {
   train_brake_build::fuzz::Scratch scratch;
   fs::path outside = fs::path(scratch.Put("outside", "untouched")).parent_path();

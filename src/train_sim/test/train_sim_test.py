@@ -345,7 +345,7 @@ class TrainSimTest(unittest.TestCase):
         self.assertTrue(json.loads((self.out / "summary.json").read_text())["complete"])
 
     def test_messages_that_cannot_be_written_do_not_end_a_run(self):
-        """The standard error full, closed, a pipe that nobody reads; all three streams closed."""
+        """The standard error full, closed, a pipe without a reader; all three streams closed."""
         digest = self.run_ok(DIP, *SHORT)["state_digest"]
         tables = None
         for i, (redirection, code) in enumerate((("2>/dev/full", 0), ("2>&-", 0), ("2> >(true)", 0), ("<&- >&- 2>&-", 0),

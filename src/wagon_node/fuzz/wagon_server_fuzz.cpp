@@ -146,7 +146,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   StepRequest last;
   const auto require_secret = [](std::uint64_t known_run, const std::string& message) {
     const bool is_told = message.find(std::to_string(kRun)) != std::string::npos;
-    Require(known_run == kRun || !is_told, "the run id is told to nobody");
+    Require(known_run == kRun || !is_told, "the run id is never sent back");
   };
   const auto step = [&](const StepRequest& request) {
     const StepResponse reply = server.Step(request);

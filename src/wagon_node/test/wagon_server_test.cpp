@@ -115,7 +115,7 @@ class Mirror : public train_dynamics::Transport {
 
   void Resume(std::uint64_t, const std::vector<train_dynamics::StateRow>&,
               train_dynamics::ExchangeReply&) override {
-    FAIL() << "nobody asks for it here";
+    FAIL() << "no call of this test asks for it";
   }
 
   void Exchange(const train_dynamics::ExchangeRequest& request,

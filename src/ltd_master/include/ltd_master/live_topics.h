@@ -18,7 +18,7 @@ namespace ltd_master {
 ///   live/state  live/in_train_forces  live/brake_pressures  live/wagon_NNN/state
 ///                            the same messages as without `live/`, where every record comes
 ///
-/// All are latched: whoever comes late, or during a pause, gets the newest.
+/// All are latched: a subscriber that comes late, or in a pause, gets the newest.
 class LiveTopics {
  public:
   /// The run as its loop sees it, which is not in the record.

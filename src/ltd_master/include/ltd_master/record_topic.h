@@ -12,7 +12,7 @@ namespace ltd_master {
 
 /// A topic of every record that also serves those who come while the train stands: they get the record at which it
 /// stands, so that a recorder that is started in a pause has all that follows from there. (A latched topic would do the
-/// same, but convert and serialise every record even where nobody listens.)
+/// same, but convert and serialise every record even without subscribers.)
 template <class Message>
 class RecordTopic {
  public:
@@ -23,7 +23,7 @@ class RecordTopic {
     });
   }
 
-  /// A new record. @param make  makes the message; not called where nobody listens
+  /// A new record. @param make  makes the message; not called without subscribers
   template <class Make>
   void Publish(const Make& make) {
     {

@@ -178,7 +178,7 @@ void ServiceLink::ExpectSilence() const {
   std::uint8_t byte = 0;
   const ssize_t count = recv(descriptor_, &byte, 1, MSG_PEEK);
   if (count == 0) throw LinkError("closed the connection");
-  if (count > 0) throw LinkError("sent what nobody asked for");
+  if (count > 0) throw LinkError("sent data without a request");
   if (!WouldBlock() && errno != EINTR) throw SystemError("connection broke");
 }
 

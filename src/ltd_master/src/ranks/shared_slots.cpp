@@ -76,7 +76,7 @@ SharedSlots::~SharedSlots() { close(descriptor_); }
 std::uint32_t SharedSlots::NewSlot() {
   const ExchangeLayout& layout = memory_->layout();
   if (next_slot_ == layout.slots) return kNoSlot;
-  // Memory is only promised until it is touched; whoever then touches what is not there any more, dies.
+  // Memory is only promised until it is touched; a process that touches missing memory is killed by SIGBUS.
   const auto begin = static_cast<off_t>(layout.SlotOffset(next_slot_));
   if (posix_fallocate(descriptor_, begin, static_cast<off_t>(layout.SlotSize())) != 0) return kNoSlot;
   return next_slot_++;

@@ -186,7 +186,7 @@ class Run:
 
 
 def load(given: Union[str, pathlib.Path], topics: Sequence[str] = ()) -> Run:
-    """A run from its folder or from a bag, whoever recorded it.
+    """A run from its folder or from a bag, recorded by a run or by rosbag.
 
     @param topics  are read at once; the others when they are asked for
     @raises BagError  if it cannot be read; KeyError if it has no such topic

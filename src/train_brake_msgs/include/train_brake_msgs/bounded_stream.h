@@ -16,7 +16,7 @@ namespace train_brake_msgs {
 /// Reads a message from bytes of which nothing is trusted.
 ///
 /// roscpp's IStream makes room for as many elements as an array announces before it looks whether their bytes
-/// are there; here the bytes come first. Every byte is read once, so that whoever shares the memory cannot
+/// are there; here the bytes come first. Every byte is read once, so that a process that shares the memory cannot
 /// change a number after it was checked.
 class BoundedStream : public ros::serialization::Stream {
  public:

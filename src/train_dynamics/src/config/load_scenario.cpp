@@ -65,7 +65,7 @@ BrakeSystem ReadPressureTable(const std::string& file, int vehicles) {
   }
 }
 
-/// Whether a vehicle has a 2D model that can rest; if not, reports which of its parameters are in the way.
+/// Whether a vehicle has a 2D model that can rest; if not, reports which of its parameters prevent it.
 /// @param path  of the vehicle with a dot at its end; empty for the root
 bool MakesWagon(const VehicleParams& vehicle, const std::string& path, Reader& rules) {
   if (vehicle.IsOneMass()) {

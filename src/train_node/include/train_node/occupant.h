@@ -6,10 +6,10 @@
 namespace train_node {
 
 /// The process that has a node's name already, as the ROS master and the process itself tell it. A ROS master gives
-/// a name to whoever asks last and ends the one that had it, which would end a run; so a node looks first.
+/// a name to the last node that asks and ends the one that had it, which would end a run; so a node looks first.
 struct Occupant {
   enum class State {
-    kNone,  ///< nobody is registered, or who is registered does not exist any more (killed, its machine gone)
+    kNone,  ///< no node is registered, or the registered one does not exist any more (killed, its machine gone)
     kSilent,  ///< a process accepts connections and does not answer: stopped, or in a debugger
     kAlive,
   };

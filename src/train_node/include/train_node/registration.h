@@ -10,7 +10,7 @@
 
 namespace train_node {
 
-/// Keeps this node known to its ROS master. A ROS master that is restarted knows nobody, and roscpp registers a topic
+/// Keeps this node known to its ROS master. A ROS master that is restarted knows no node, and roscpp registers a topic
 /// or service only once: those who come later would never find them.
 ///
 /// Asks the ROS master every `period` whether it knows this node, and otherwise registers all its topics and services

@@ -17,7 +17,7 @@ class BagRecorder {
   /// @throws std::system_error if the file cannot be made
   BagRecorder(const std::string& file, const train_dynamics::ScenarioParams& scenario);
 
-  /// Is to go on with a bag that a checkpoint is of, and does so at GoOn, see BagWriter.
+  /// Prepares to continue the bag of a checkpoint; GoOn does it, see BagWriter.
   BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint, int vehicles);
   void GoOn() { bag_.GoOn(); }
   train_dynamics::Bytes Checkpoint();

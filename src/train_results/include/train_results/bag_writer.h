@@ -25,7 +25,7 @@ class BagWriter {
  public:
   /// @throws std::system_error if the file cannot be made
   explicit BagWriter(const std::string& file);
-  /// Is to go on with a bag that a checkpoint is of, FILE or FILE.active. Only looks at it: see GoOn.
+  /// Prepares to continue the bag of a checkpoint, FILE or FILE.active. Only reads it; GoOn changes it.
   /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then
   BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
   /// Opens that bag and cuts off what came after the checkpoint; before that nothing can be written.
@@ -35,7 +35,7 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// A new topic, for Write. @param latched  a player gives its last message to whoever comes later
+  /// A new topic, for Write. @param latched  a player gives its last message to later subscribers
   template <class Message>
   int AddTopic(const std::string& name, bool latched = false) {
     namespace traits = ros::message_traits;

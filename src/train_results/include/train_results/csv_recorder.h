@@ -21,7 +21,7 @@ namespace train_results {
 class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
-  /// Is to go on with tables that a checkpoint is of. Only looks at them: see GoOn.
+  /// Prepares to continue the tables of a checkpoint. Only reads them; GoOn changes them.
   /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were
   CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint, int vehicles);
   /// Opens those tables and cuts off what came after the checkpoint; before that nothing can be written.

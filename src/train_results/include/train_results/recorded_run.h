@@ -36,7 +36,7 @@ class RecordedTopic {
   Bytes message_;
 };
 
-/// The run of one train in a bag, whoever recorded it: train_sim, ltd_master or rosbag record.
+/// The run of one train in a bag, recorded by train_sim, ltd_master or rosbag record.
 ///
 /// Topics are known by their types and share the namespace of the topic of TrainState.
 class RecordedRun {

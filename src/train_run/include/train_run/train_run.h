@@ -23,7 +23,7 @@ class WriteError : public std::runtime_error {
 
 /// What the owner of a run decides between two exchanges.
 struct RunHooks {
-  /// Asked before each exchange, whether the run is to end there.
+  /// Called before each exchange; true ends the run there.
   std::function<bool()> ends = [] { return false; };
   /// Whether the next exchange may begin now. If not, it has waited a moment, and is asked again after `ends`.
   std::function<bool()> admits = [] { return true; };

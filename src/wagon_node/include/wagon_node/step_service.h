@@ -19,7 +19,7 @@ namespace wagon_node {
 ///
 /// Like any ROS service, but for what it costs: of a call's thirteen system calls of roscpp three are left (wait,
 /// read, write), its copies of the messages are none, and a request may hold anything. It has a thread of its own,
-/// which sleeps while nobody calls.
+/// which sleeps until a call arrives.
 class StepService {
  public:
   /// Reads a request, and appends the response to the reply. What it throws is told to the caller.

@@ -11,7 +11,7 @@
 
 namespace ltd_master {
 
-/// A connection that cannot be made, broke, or carried what nobody expects; what() says why.
+/// A connection that cannot be made, broke, or carried unexpected data; what() says why.
 class LinkError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -57,7 +57,7 @@ class SharedSlots {
   int descriptor_ = -1;
   std::unique_ptr<train_brake_msgs::ExchangeMemory> memory_;
   std::vector<RankSlot> ranks_;
-  std::uint32_t next_slot_ = 0;  ///< that nobody has had
+  std::uint32_t next_slot_ = 0;  ///< never given to a rank
   std::uint64_t call_ = 0;       ///< number of the present one
   const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
   train_brake_msgs::Vigil vigil_;

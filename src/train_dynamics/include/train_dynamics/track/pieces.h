@@ -18,7 +18,7 @@ struct Stretch {
 /// cells, two per cut, tell which cuts a position has to be compared with. Where many cuts crowd in one cell these are
 /// searched by halving.
 ///
-/// A look-up depends on the position only and remembers nothing: whoever asks, in whatever order and direction, is told
+/// A look-up depends on the position only and remembers nothing: in any order and direction of look-ups, the answer is
 /// the same.
 class Pieces {
  public:

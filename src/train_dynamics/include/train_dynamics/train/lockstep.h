@@ -56,7 +56,7 @@ struct VehicleFault {
 /// The record of a row of vehicles.
 struct VehicleRecords : RecordArrays {
   std::vector<std::uint64_t> state_digest;  ///< [vehicle]
-  std::vector<WagonDetail> details;         ///< whoever has one of these vehicles fills its entry
+  std::vector<WagonDetail> details;         ///< filled by the rank that has the vehicle
   /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none
   std::vector<double> wheelset_work_j;
 

@@ -30,7 +30,7 @@ struct TrackWork {
 
 /// Collects slides and the work on the track from a run's records as they pass.
 ///
-/// Between two looks at a vehicle, half a metre of way or one record apart, its work is spread evenly over the way. The
+/// Between two looks at a vehicle, half a metre or one record apart, its work is spread evenly over the distance. The
 /// sum over the track is the ledger's creep account, up to rounding.
 class SlideResults {
  public:

@@ -10,7 +10,7 @@
 namespace train_dynamics {
 
 /// Vehicles of one type in packs of lanes. The last pack is filled up with copies of its first vehicle, which
-/// do what that does; nobody looks at them.
+/// do what that does; they are never read.
 template <class Vehicle>
 class VehicleBatch {
  public:
