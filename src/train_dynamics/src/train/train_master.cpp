@@ -10,6 +10,7 @@ namespace train_dynamics {
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
                          BrakeSystem brake)
     : scenario_(scenario),
+      consist_(consist),
       transport_(transport),
       brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
@@ -125,6 +126,38 @@ void TrainMaster::Command(const DriverCommand& command) {
   if (!command.IsOfLocomotives())
     BrakeSystem(brake_).Command(command.OfBrake(time_s()));  // of a copy: may it?
   schedule_.Add(command);
+}
+
+const DriverView& TrainMaster::View(double ahead_m, bool is_shown_couplers) {
+  if (!sight_) sight_.emplace(scenario_.track, consist_, scenario_.start_position_m);
+  DriverView& view = view_;
+  view.exchange = exchange_;
+  view.time_s = time_s();
+  view.speed_mps = reply_.head_velocity_mps.front();
+  sight_->Look(reply_.head_displacement_m, ahead_m, view);
+  view.effort_n = 0.0;
+  for (std::size_t i = 0; i < locomotives_.size(); ++i) view.effort_n += locomotives_.drive(i).effort_n;
+  if (!locomotives_.empty()) {
+    view.throttle_notch = locomotives_.command(0).throttle_notch;
+    view.dynamic_brake_notch = locomotives_.command(0).dynamic_brake_notch;
+  }
+  SetBrakeHandle(scenario_.commands, schedule_.Given(), time_s(), scenario_.exchange_interval_s, view);
+  brake_.PressuresAt(time_s(), pressure_pa_);
+  view.cylinder_kpa = 1e-3 * pressure_pa_.front();
+  view.mean_cylinder_kpa = 0.0;
+  for (const double pressure_pa : pressure_pa_)
+    view.mean_cylinder_kpa += 1e-3 * pressure_pa / static_cast<double>(pressure_pa_.size());
+  view.brake_pipe_kpa = std::numeric_limits<double>::quiet_NaN();
+  if (const PneumaticBrake* machine = brake_.pneumatic())
+    view.brake_pipe_kpa = 1e-3 * machine->PipePressure(0);
+  view.coupler_force_n.clear();
+  if (is_shown_couplers) {
+    InTrainForces forces = forces_;  // of a copy: the exchange evaluates them itself
+    std::vector<double> force_n(request_.coupler_force_n.size());
+    forces.Evaluate(time_s() + 0.5 * scenario_.exchange_interval_s, reply_.head_velocity_mps, force_n);
+    view.coupler_force_n.assign(force_n.begin() + 1, force_n.end() - 1);
+  }
+  return view;
 }
 
 void TrainMaster::GiveCommands() {

@@ -28,6 +28,7 @@ class Locomotives {
   void Command(const LocomotiveCommand& command);
   /// What the driver asks of locomotive i from the next exchange on, until a command of the list comes.
   void SetCommand(std::size_t i, const NotchCommand& command) { drives_[i].command = command; }
+  const NotchCommand& command(std::size_t i) const { return drives_[i].command; }  ///< that it obeys now
   const DriveState& drive(std::size_t i) const { return drives_[i].state; }
 
   /// Moves the drives on by an exchange and sets the loads that they are: empty arrays, where there are no locomotives.

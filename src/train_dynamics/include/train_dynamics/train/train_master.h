@@ -8,6 +8,7 @@
 #include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/train/command_schedule.h"
 #include "train_dynamics/train/curving_loads.h"
+#include "train_dynamics/train/driver_view.h"
 #include "train_dynamics/train/energy_ledger.h"
 #include "train_dynamics/train/in_train_forces.h"
 #include "train_dynamics/train/lockstep.h"
@@ -71,6 +72,10 @@ class TrainMaster {
   /// @throws std::invalid_argument if the brake cannot obey; then nothing has changed
   void Command(const DriverCommand& command);
   const CommandSchedule& schedule() const { return schedule_; }
+  /// What a driver sees at the start of the next exchange, commands that are given there not included.
+  /// @param ahead_m            how far he sees and knows the line, from the front of the train; >= 0
+  /// @param is_shown_couplers  whether he is shown the forces in all couplers, as no cab does
+  const DriverView& View(double ahead_m, bool is_shown_couplers = false);
 
   long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run, if `until` does not end it
   bool Done() const { return has_ended_ || static_cast<long>(exchange_) >= exchanges(); }
@@ -96,6 +101,7 @@ class TrainMaster {
   void Give(const GivenCommand& given);
 
   const ScenarioParams& scenario_;
+  const Consist& consist_;
   Transport& transport_;
   BrakeSystem brake_;
   InTrainForces forces_;
@@ -108,6 +114,9 @@ class TrainMaster {
   ExchangeRequest request_;
   ExchangeReply reply_;
   CommandSchedule schedule_;
+  std::optional<RouteSight> sight_;  ///< of a driver, once there is one
+  DriverView view_;
+  std::vector<double> pressure_pa_;  ///< [vehicle] that the driver sees
   std::vector<GivenCommand> given_;  ///< since the last record
   bool has_ended_ = false;
   TrainRecord record_;  ///< the last one; keeps its memory from record to record
