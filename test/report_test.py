@@ -22,9 +22,10 @@ import rosbag
 import rosunit
 
 import train_brake
+import train_brake.run_files
 from train_brake import Table
 from train_brake import bag as bag_reader
-from train_brake_report import cards, command, consist, figure, paper, series, slides, wave
+from train_brake_report import cards, command, consist, figure, paper, series, slides, style, wave
 from train_brake_report.figures import space_time
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs
@@ -104,6 +105,69 @@ class ReportTest(unittest.TestCase):
 
     def page(self, *arguments):
         return self.report(*arguments)[0]
+
+    # Names and files of users
+
+    def copy(self, name, of=None):
+        """A copy of a run's folder under a name of its own."""
+        folder = self.here / name
+        shutil.copytree(of or six_wagons(), folder)
+        return folder
+
+    def test_any_name_stands_in_legends_as_it_is_written(self):
+        names = ["_beginsso", r"$x_1$ cost\$5", "50% #3", "a\x1b[31mb\u202ec", "two\nlines"]
+        group = group_of(*(self.copy(name) for name in names))
+        self.assertEqual(["\u200b_beginsso", r"$x_1$ cost\$5", "50% #3", "a?[31mb?c", "two lines"], [r.label for r in group.runs])
+        page, printed = self.report(*(self.here / name for name in names))
+        speeds = re.findall(r"<text[^>]*>([^<]*)</text>", page.figures["speeds"])
+        for run in group.runs:  # whole, and not as a formula, whose characters stand one by one
+            self.assertIn(run.label, speeds)
+        self.assertEqual([], [c for c in page.text + printed if ord(c) < 32 and c not in "\n\t" or c == "\u202e"])
+
+    def test_numbers_of_logarithmic_axes_need_no_formula(self):
+        axis = mock.Mock()
+        style.powers_of_ten(axis)
+        power = axis.set_major_formatter.call_args[0][0]
+        self.assertEqual(["10\u207b\u00b3", "10\u2070", "10\u00b9\u2075", "5", "0.02"],
+                         [power(x, 0) for x in (1e-3, 1.0, 1e15, 5.0, 0.02)])
+
+    def test_different_names_have_different_anchors(self):
+        self.assertEqual({"a b": "a_b", "a-b": "a_b_2", "A_B": "a_b_3", "": "runs", "$": "runs_2"},
+                         command.anchors_of(["a b", "a-b", "A_B", "", "$"]))
+
+    def test_files_of_other_programs_are_told(self):
+        for name, text, complaint in (("summary.json", '{"a": 1}', "summary.json is not the summary of a run: scenario is missing"),
+                                      ("summary.json", "[1]", "summary.json is damaged: it is no list of keys"),
+                                      ("slides.csv", "x,y\n1,2\n", "slides.csv is damaged: it has no column vehicle, "),
+                                      ("track_wear.csv", "from_m,creep_j\n1,2\n", "damaged: it has no column brake_j"),
+                                      ("couplers.csv", "x,y\n1,2\n", "couplers.csv is damaged: ")):
+            folder = self.copy(f"foreign {name} {text[:4]}")
+            (folder / name).write_text(text)
+            _, printed = self.report(folder, code=1)
+            self.assertIn(complaint, printed)
+            self.assertNotIn("Traceback", printed)
+
+    def test_each_number_of_a_summary_must_be_one(self):
+        summary = json.loads((six_wagons() / "summary.json").read_text())
+        good = train_brake.run_files.checked(summary, train_brake.run_files.SUMMARY, pathlib.Path("x"), "y")
+        self.assertEqual(summary, good)
+        for change, complaint in (({"simulated_s": "5"}, "simulated_s is '5'"), ({"vehicles": True}, "vehicles is True"),
+                                  ({"energy": []}, "energy is not a map"), ({"stops": [{"time_s": 1}]}, "stops[0].distance_m is missing"),
+                                  ({"max_tension_n": {"value": None}}, "max_tension_n.value is missing (and 2 more)")):
+            with self.assertRaisesRegex(train_brake.BagError, re.escape(complaint)):
+                train_brake.run_files.checked({**summary, **change}, train_brake.run_files.SUMMARY, pathlib.Path("x"), "y")
+
+    def test_a_summary_of_something_else_is_not_of_a_bag_with_a_name_of_its_own(self):
+        folder = self.copy("mine")
+        (folder / "train.bag").rename(folder / "measured.bag")
+        (folder / "summary.json").write_text('{"a": 1}')
+        self.assertEqual("0.2", self.page(folder / "measured.bag").numbers[0]["simulated_s"][:3])
+
+    def test_a_page_needs_no_locale(self):
+        folder = self.copy("Z\u00fcge")
+        done = subprocess.run(["rosrun", "train_brake", "report", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              env={**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"})
+        self.assertEqual(0, done.returncode, done.stdout)
 
     # What the page says
 

@@ -11,6 +11,7 @@
 
 #include "ltd_master/master_node.h"
 #include "strict_config/error_list.h"
+#include "train_console/console.h"
 #include "train_node/caller.h"
 #include "train_node/node_parameters.h"
 #include "train_node/occupant.h"
@@ -86,19 +87,19 @@ int main(int argc, char** argv) {
         ltd_master::MasterOptions::FromParameters(parameters, ros::this_node::getNamespace());
     exit_code = ltd_master::MasterNode(options, ros::NodeHandle(), *own).Run();
   } catch (const strict_config::Error& e) {
-    ROS_FATAL("bad configuration:\n%s", e.what());
+    ROS_FATAL("bad configuration:\n%s", train_console::Presentable(e.what()).c_str());
     exit_code = train_run::kBadInput;
   } catch (const std::invalid_argument& e) {
-    ROS_FATAL("%s", e.what());
+    ROS_FATAL("%s", train_console::Presentable(e.what()).c_str());
     exit_code = train_run::kBadInput;
   } catch (const std::exception& e) {
-    ROS_FATAL("%s", e.what());
+    ROS_FATAL("%s", train_console::Presentable(e.what()).c_str());
   }
   if (!exit_status_file.empty()) {
     try {
       train_results::WriteFile(exit_status_file, std::to_string(exit_code) + "\n");
     } catch (const std::exception& e) {
-      ROS_FATAL("%s", e.what());
+      ROS_FATAL("%s", train_console::Presentable(e.what()).c_str());
     }
   }
   return exit_code;

@@ -23,6 +23,7 @@
 namespace ltd_master {
 namespace {
 
+using train_console::Presentable;
 using train_dynamics::TrainMaster;
 using train_dynamics::TrainRecord;
 
@@ -90,7 +91,7 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.output.on_write_error = parameters.IsFirstOf("on_write_error", "stop", "go_on")
                                       ? train_results::OnWriteError::kStop
                                       : train_results::OnWriteError::kGoOn;
-  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", what.c_str()); };
+  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", Presentable(what).c_str()); };
   options.real_time_factor = parameters.NonNegative("real_time_factor", 0.0);
   options.start_paused = parameters.Flag("start_paused", false);
   options.startup_timeout_s = parameters.NonNegative("startup_timeout_s", 60.0);
@@ -127,7 +128,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
       forces_topic_(node, "in_train_forces", kQueue),
       pressures_topic_(node, "brake_pressures", kQueue),
       commands_(scenario_.params) {
-  for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", warning.c_str());
+  for (const std::string& warning : scenario_.warnings) ROS_WARN("%s", Presentable(warning).c_str());
   const int vehicles = scenario_.consist.vehicles();
   if (options.vehicles != 0 && options.vehicles != vehicles) {
     throw std::invalid_argument(
@@ -165,7 +166,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
 void MasterNode::TellWhatIsNotUsed() const {
   if (!options_.nodes.empty() && options_.nodes != "auto" &&
       options_.nodes != std::to_string(options_.ranks)) {
-    ROS_WARN("nodes:=%s is not used: %s", options_.nodes.c_str(),
+    ROS_WARN("nodes:=%s is not used: %s", Presentable(options_.nodes).c_str(),
              scenario_.params.model == train_dynamics::VehicleModel::kTwoD
                  ? fmt::format("the train has {} vehicles and runs on {} wagon nodes",
                                scenario_.consist.vehicles(), options_.ranks)
@@ -176,7 +177,8 @@ void MasterNode::TellWhatIsNotUsed() const {
   if (folder.empty()) {
     ROS_INFO("no results are kept (out:=FOLDER keeps them)");
   } else {
-    ROS_INFO("results go to %s", std::filesystem::absolute(folder).lexically_normal().c_str());
+    ROS_INFO("results go to %s",
+             Presentable(std::filesystem::absolute(folder).lexically_normal().string()).c_str());
   }
 }
 
@@ -240,7 +242,7 @@ int MasterNode::Run() {
   if (progress != nullptr) progress->Finish();
   const double wall_s = progress == nullptr ? 0.0 : progress->WallSeconds();
   const std::string json = run.Finish(wall_s, rank_fault);
-  for (const std::string& warning : run.Warnings()) ROS_WARN("%s", warning.c_str());
+  for (const std::string& warning : run.Warnings()) ROS_WARN("%s", Presentable(warning).c_str());
   int exit_code = run.exit_code();
   if (exit_code != train_run::kFailure && !rank_fault.empty()) exit_code = train_run::kRankFailure;
   std::string fault = rank_fault.empty() ? run.fault() : rank_fault;
@@ -252,7 +254,7 @@ int MasterNode::Run() {
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
   } else if (!fault.empty()) {
-    ROS_FATAL("the run broke down: %s", fault.c_str());
+    ROS_FATAL("the run broke down: %s", Presentable(fault).c_str());
   }
   return exit_code;
 }
@@ -275,7 +277,7 @@ void MasterNode::Go(train_run::TrainRun& run) {
         try {
           run.Command(command);
         } catch (const std::invalid_argument& e) {
-          ROS_WARN("the command %s is not given: %s", command.Text().c_str(), e.what());
+          ROS_WARN("the command %s is not given: %s", command.Text().c_str(), Presentable(e.what()).c_str());
         }
       }
       return true;
@@ -411,7 +413,7 @@ void MasterNode::OnCommand(const train_brake_msgs::DriverCommand& message) {
   try {
     commands_.Receive(message);
   } catch (const std::invalid_argument& e) {
-    ROS_WARN("a command on driver/command is refused: %s", e.what());
+    ROS_WARN("a command on driver/command is refused: %s", Presentable(e.what()).c_str());
   }
 }
 

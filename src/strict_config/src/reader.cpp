@@ -41,6 +41,22 @@ std::size_t FindKey(const std::string& text, const std::string& key) {
   return at;
 }
 
+/// Whether text in UTF-8 has characters that command a terminal (but for line feeds and tabs): control characters of
+/// ASCII, those from U+0080 to U+009F, and those that turn the direction of writing.
+bool HasControlCharacter(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t ahead) {
+      return i + ahead < text.size() ? static_cast<unsigned char>(text[i + ahead]) : 0u;
+    };
+    if ((byte(0) < 0x20 && text[i] != '\n' && text[i] != '\t') || byte(0) == 0x7F) return true;
+    if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) <= 0x9F) return true;
+    const bool turns = (byte(1) == 0x80 && byte(2) >= 0xAA && byte(2) <= 0xAE) ||
+                       (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);
+    if (byte(0) == 0xE2 && turns) return true;
+  }
+  return false;
+}
+
 /// A map that holds the reference to a table under a key.
 NodePtr AsMap(const NodePtr& reference, const char* table_key) {
   auto map = std::make_shared<Node>();
@@ -132,10 +148,13 @@ void Reader::Flag(const char* key, bool& value, const char* /*meaning*/) {
 void Reader::Text(const char* key, std::string& value, const char* /*meaning*/) {
   const Value found = Find(key);
   if (!found) return;
-  if (found.node->kind == Node::Kind::kScalar) {
-    value = found.node->text;
-  } else {
+  if (found.node->kind != Node::Kind::kScalar) {
     found.node->source.Report(session_.errors, found.path, "must be text, got " + Describe(*found.node));
+  } else if (HasControlCharacter(found.node->text)) {
+    found.node->source.Report(session_.errors, found.path,
+                              "must be text without control characters, got " + Describe(*found.node));
+  } else {
+    value = found.node->text;
   }
 }
 

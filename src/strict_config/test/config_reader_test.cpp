@@ -502,6 +502,22 @@ TEST_F(ConfigTest, FilesThatAreNotYaml) {
   EXPECT_EQ(ErrorsOf("a: \xe2\x82"), "a.yaml:1: is not a text file in UTF-8");
 }
 
+TEST_F(ConfigTest, TextsMayNotCommandTerminals) {
+  for (const std::string escape :
+       {"\\e[31m", "\\0", "\\a", "\\x7f", "\\x9b2J", "\\u202e", "\\u2066", "\\r"}) {
+    const std::string errors = ErrorsOf("consist:\n  - vehicle: {name: \"a" + escape + "b\"}\n");
+    EXPECT_NE(
+        errors.find("a.yaml:2: consist[0].vehicle.name must be text without control characters, got 'a"),
+        std::string::npos)
+        << escape << ": " << errors;
+    EXPECT_EQ(errors.find('\0'), std::string::npos) << "cut there by what takes C strings";
+  }
+  for (const std::string escape : {"\\n", "\\t", "\\xfc", "\\u00a0", "\\u202f", "$x_1$ # % \\U0001F682"})
+    EXPECT_EQ(ErrorsOf("consist:\n  - vehicle: {name: \"a" + escape + "b\"}\n").find("control"),
+              std::string::npos)
+        << escape;
+}
+
 TEST_F(ConfigTest, SyntaxErrorsNameTheirLine) {
   EXPECT_EQ(ErrorsOf("record: true\ndetailed: [1, 2\n"),
             "a.yaml:3: is not valid YAML: end of sequence flow not found");
@@ -952,7 +968,7 @@ TEST_F(PartsTest, WriteReadWriteIsIdentical) {
 TEST_F(ConfigTest, AnyTextSurvivesARoundTrip) {
   for (const std::string text :
        {"",     "plain", "two words", "12",     "true",         "NULL",  "~",  "- a", "a: b", "#x",
-        "a #b", " lead", "trail ",    "x\ny\n", "it's",         "\"q\"", "\\", "{a}", "ünï",  "\x01\x7f",
+        "a #b", " lead", "trail ",    "x\ny\n", "it's",         "\"q\"", "\\", "{a}", "ünï",  "\t",
         "*a",   "&a",    "!t",        "a,b",    "path/to.yaml", "@",     "%",  "---", "..."}) {
     Vehicle vehicle;
     vehicle.name = text;

@@ -3,10 +3,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 namespace train_console {
 namespace {
@@ -17,7 +21,48 @@ void Flush() {
   if (std::fflush(stdout) != 0 && g_error == 0) g_error = errno;
 }
 
+/// The character of UTF-8 that begins at `i`, and its number of bytes; {0, 0} if none does.
+std::pair<std::uint32_t, std::size_t> CharacterAt(const std::string& text, std::size_t i) {
+  const auto byte = [&](std::size_t j) { return static_cast<unsigned char>(text[j]); };
+  const unsigned lead = byte(i);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC2 ? 2 : 0;
+  if (length == 0 || lead > 0xF4 || i + length > text.size()) return {0, 0};
+  std::uint32_t character = lead & (0x7Fu >> length);
+  for (std::size_t j = i + 1; j < i + length; ++j) {
+    if ((byte(j) & 0xC0u) != 0x80u) return {0, 0};
+    character = (character << 6u) | (byte(j) & 0x3Fu);
+  }
+  constexpr std::uint32_t kShortest[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = character >= 0xD800 && character <= 0xDFFF;
+  if (character < kShortest[length] || character > 0x10FFFF || is_surrogate) return {0, 0};
+  return {character, length};
+}
+
+bool IsControl(std::uint32_t character) {
+  const auto is_in = [character](std::uint32_t first, std::uint32_t last) {
+    return character >= first && character <= last;
+  };
+  if (character == '\n' || character == '\t') return false;
+  return is_in(0, 0x1F) || is_in(0x7F, 0x9F) || is_in(0x202A, 0x202E) || is_in(0x2066, 0x2069);
+}
+
 }  // namespace
+
+std::string Presentable(const std::string& text) {
+  std::string presentable;
+  presentable.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const auto [character, length] = CharacterAt(text, i);
+    if (length == 0 || IsControl(character)) {
+      presentable += '?';
+    } else {
+      presentable.append(text, i, length);
+    }
+    i += std::max<std::size_t>(length, 1);
+  }
+  return presentable;
+}
 
 void PrepareProcess() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {

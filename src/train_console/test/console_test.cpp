@@ -80,6 +80,36 @@ TEST(ConsoleTest, OpenStreamsStayWhatTheyAre) {
             }));
 }
 
+TEST(ConsoleTest, PresentableTextCommandsNoTerminal) {
+  for (int c = 0; c < 0x20; ++c) {
+    const std::string text = std::string("a") + static_cast<char>(c) + "b";
+    EXPECT_EQ(Presentable(text), c == '\n' || c == '\t' ? text : "a?b") << c;
+  }
+  EXPECT_EQ(Presentable("\x1b[2J\x7f"), "?[2J?");
+  EXPECT_EQ(Presentable("\xc2\x9b"
+                        "31m"),
+            "?31m");  // U+009B does what ESC [ does
+  EXPECT_EQ(Presentable("\x9b"
+                        "31m"),
+            "?31m");  // so does its byte alone, in terminals without UTF-8
+  EXPECT_EQ(Presentable("gpj.\u202exe"), "gpj.?xe");
+  EXPECT_EQ(Presentable("\xe2\x81\xa6x\xe2\x81\xa9"), "?x?");
+}
+
+TEST(ConsoleTest, PresentableTextOfAllLanguagesStays) {
+  for (const std::string text : {"Züge", "車両 1", "Поезд", "🚂", "\u00a0", "\u202f", "$x_1$ #%", ""})
+    EXPECT_EQ(Presentable(text), text);
+}
+
+TEST(ConsoleTest, BytesThatAreNoCharacterAreReplaced) {
+  EXPECT_EQ(Presentable("Z\xfcge"), "Z?ge");           // Latin-1
+  EXPECT_EQ(Presentable("\xc0\xaf"), "??");            // '/' in two bytes
+  EXPECT_EQ(Presentable("\xe2\x82"), "??");            // cut short
+  EXPECT_EQ(Presentable("\xed\xa0\x80"), "???");       // half of a pair of UTF-16
+  EXPECT_EQ(Presentable("\xf5\x80\x80\x80"), "????");  // beyond Unicode
+  EXPECT_EQ(Presentable(std::string("a\0b", 3)), "a?b");
+}
+
 TEST(ConsoleTest, LimitOfFileSizeIsAnErrorOfTheWrite) {
   EXPECT_EQ(0, Ends([] {
               PrepareProcess();

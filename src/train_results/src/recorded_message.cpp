@@ -11,7 +11,6 @@
 #include <sstream>
 #include <type_traits>
 
-#include "strict_config/text_file.h"
 #include "train_dynamics/vehicle/wagon.h"
 
 namespace train_results {
@@ -220,14 +219,6 @@ Comparison::OwnersOf OfArrays(const Owners& owners) {
 }
 
 }  // namespace
-
-std::string Presentable(std::string text) {
-  strict_config::ErrorList complaints;
-  if (strict_config::IsCleanText(text, "", complaints)) return text;
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text;
-}
 
 std::optional<std::uint64_t> ExchangeOf(const Bytes& message) {
   Source source(message);

@@ -140,10 +140,5 @@ TEST(RecordedMessage, ExchangeStandsBehindTheFrame) {
   EXPECT_EQ(ExchangeOf({}), std::nullopt);
 }
 
-TEST(RecordedMessage, WhatIsNotFitToPrintIsReplaced) {
-  EXPECT_EQ(Presentable("Züge"), "Züge");
-  EXPECT_EQ(Presentable("\x1b[2J\xff"), "?[2J?");
-}
-
 }  // namespace
 }  // namespace train_results

@@ -2,10 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "strict_config/error_list.h"
+#include "strict_config/scalar.h"
 #include "train_console/console.h"
 #include "train_sim/brake_commands.h"
 #include "train_sim/check_command.h"
@@ -36,6 +39,14 @@ constexpr const char* kDescription =
     "different; 6 "
     "nothing\n"
     "can be told; 7 the same as far as the recording goes.";
+
+/// A time [s] that is a finite number >= 0. (CLI::NonNegativeNumber takes nan.)
+const CLI::Validator kSeconds(
+    [](const std::string& text) {
+      const std::optional<double> seconds = strict_config::ParseNumber(text);
+      return seconds && *seconds >= 0.0 ? "" : "must be a plain number of seconds >= 0, got '" + text + "'";
+    },
+    "s >= 0");
 
 /// Options shared by the commands that read a file and change it.
 /// @return the file's option
@@ -68,7 +79,7 @@ int Main(int argc, char** argv) {
   run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
                   "simulated time [s] between checkpoints in the folder of --out; 0: none")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(kSeconds);
   run->add_flag("--go-on-without-records", options.go_on_without_records,
                 "where results cannot be written: run to the end all the same, and end with 1");
   run->add_option("--model", options.model, "vehicle model; default: the scenario's")
@@ -167,7 +178,11 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? train_run::kSuccess : train_run::kBadInput;
+    std::ostringstream output, complaint;
+    const int code = app.exit(e, output, complaint);
+    train_console::Print("{}", output.str());
+    train_console::Tell("{}", complaint.str());
+    return code == 0 ? train_run::kSuccess : train_run::kBadInput;
   }
   return command();
 }

@@ -35,7 +35,6 @@ using train_dynamics::TrainRecord;
 using train_dynamics::config::LoadedScenario;
 using train_results::Compare;
 using train_results::Difference;
-using train_results::Presentable;
 using train_results::RecordedRun;
 using train_results::RecordedTopic;
 
@@ -222,8 +221,8 @@ std::string Comparison::Verdict() const {
       "different: the first record that differs is that of {:g} s (exchange {})\n"
       "  {}\n"
       "  {} of {} vehicles differ in it; the {} records before it are the same\n",
-      time_s_, exchange_, Presentable(what),
-      std::count_if(differences_.begin(), differences_.end(), is_vehicle), vehicles_, records_);
+      time_s_, exchange_, what, std::count_if(differences_.begin(), differences_.end(), is_vehicle),
+      vehicles_, records_);
 }
 
 /// The digest in the summary.json of a whole run, where the recording is such a run's; else nothing.
@@ -311,7 +310,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   if (summarised && *summarised != digest) {
     train_console::Print(
         "different: the records are the same, but summary.json has the digest {}, now it is {}\n",
-        Presentable(*summarised), digest);
+        *summarised, digest);
     return train_run::kDifferent;
   }
   const std::string begin =
@@ -323,7 +322,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
 }
 
 int Unreadable(const std::string& recording, const std::string& why) {
-  train_console::Tell("train_sim: {} cannot be verified: {}\n", recording, Presentable(why));
+  train_console::Tell("train_sim: {} cannot be verified: {}\n", recording, why);
   return train_run::kUnreadable;
 }
 

@@ -3,6 +3,7 @@
 
 #include <exception>
 
+#include "train_console/console.h"
 #include "train_node/start.h"
 #include "wagon_node/wagon_node.h"
 
@@ -15,7 +16,7 @@ int main(int argc, char** argv) {
     const auto options = wagon_node::WagonOptions::FromParameters(parameters);
     wagon_node::WagonNode(options).Run();
   } catch (const std::exception& e) {
-    ROS_FATAL("%s", e.what());
+    ROS_FATAL("%s", train_console::Presentable(e.what()).c_str());
     return kBadInput;
   }
   return 0;

@@ -2,10 +2,13 @@
 
 #include <ros/ros.h>
 
+#include "train_console/console.h"
 #include "train_dynamics/train/ranks.h"
 
 namespace wagon_node {
 namespace {
+
+using train_console::Presentable;
 
 constexpr double kTick = 0.25;  // [s] between two looks at whether there is a master, while nothing comes
 constexpr int kQueue = 100;     // one second of simulated time
@@ -63,7 +66,8 @@ bool WagonNode::Configure(ConfigureCall& call) {
   const boost::shared_ptr<const ros::M_string> session = session_.lock();
   server_.Configure(*call.request, session && CallerOf(*session) != caller, *call.response);
   if (!call.response->ok) {
-    ROS_WARN("refused to be configured by %s: %s", caller.c_str(), call.response->message.c_str());
+    ROS_WARN("refused to be configured by %s: %s", Presentable(caller).c_str(),
+             Presentable(call.response->message).c_str());
     return true;
   }
   UseSlot(*call.request);
@@ -77,7 +81,7 @@ bool WagonNode::Configure(ConfigureCall& call) {
     publishers_[detail.vehicle] =
         node_.advertise<train_brake_msgs::WagonState>(name + "/state", kQueue, true);
   }
-  ROS_DEBUG("configured by %s: %s", caller.c_str(), call.response->message.c_str());
+  ROS_DEBUG("configured by %s: %s", Presentable(caller).c_str(), call.response->message.c_str());
   Publish(call.response->record);
   return true;
 }
@@ -95,7 +99,7 @@ const train_brake_msgs::StepResponse& WagonNode::Serve(const train_brake_msgs::S
   if (response.ok) {
     Publish(response.record);
   } else {
-    ROS_WARN("refused a step: %s", response.message.c_str());
+    ROS_WARN("refused a step: %s", Presentable(response.message).c_str());
   }
   return response;
 }

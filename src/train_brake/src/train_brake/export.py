@@ -10,6 +10,7 @@ from typing import List
 import numpy
 
 from train_brake.bag import BagError
+from train_brake.presentable import accept_all_characters, presentable
 from train_brake.run import Run, load
 
 DESCRIPTION = """Writes what a run has recorded as CSV tables, one per topic, or as one HDF5 file.
@@ -58,7 +59,7 @@ def write_csv(run: Run, topics: List[str], folder: pathlib.Path) -> List[pathlib
         columns = dict(table.flat())
         file = folder / (topic.strip("/").replace("/", "_") + ".csv")
         unfinished = file.with_name(file.name + ".unfinished")
-        with open(unfinished, "w", newline="") as out:
+        with open(unfinished, "w", newline="", encoding="utf-8") as out:
             writer = csv.writer(out, lineterminator="\n")
             writer.writerow(["time_s", *columns])
             # str() of Python's numbers is the shortest text that gives the same number again
@@ -112,7 +113,7 @@ def _export(options: argparse.Namespace) -> None:
     run.read(topics)
     is_hdf5 = options.out.suffix in (".h5", ".hdf5")
     for file in (write_hdf5 if is_hdf5 else write_csv)(run, topics, options.out):
-        print(f"export: wrote {file}")
+        print(presentable(f"export: wrote {file}"))
     for topic in topics:
         left_out = [field for field in run[topic].fields if run[topic][field].dtype == object]
         if left_out:
@@ -120,14 +121,15 @@ def _export(options: argparse.Namespace) -> None:
 
 
 def main(argv: List[str]) -> int:
+    accept_all_characters()
     options = _arguments(argv)
     try:
         _export(options)
     except BagError as error:
-        print(f"export: {error}", file=sys.stderr)
+        print(presentable(f"export: {error}"), file=sys.stderr)
         return 1
     except OSError as error:
-        print(f"export: the tables could not be written: {error}", file=sys.stderr)
+        print(presentable(f"export: the tables could not be written: {error}"), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130

@@ -12,6 +12,8 @@ import sys
 import tempfile
 import time
 
+from train_brake.presentable import accept_all_characters, presentable
+
 USAGE = """usage: rosrun train_brake run SCENARIO [OUT] [ARG:=VALUE ...]
        rosrun train_brake run [OUT] resume:=FOLDER [ARG:=VALUE ...]
 
@@ -159,6 +161,7 @@ def in_short(summary):
 
 
 def main(words):
+    accept_all_characters()
     with outlived_output():
         return run(words)
 
@@ -170,7 +173,7 @@ def run(words):
     try:
         scenario, out, arguments = parse(words)
     except ValueError as error:
-        print(f"run: {error}\n\n{USAGE}", file=sys.stderr)
+        print(presentable(f"run: {error}\n\n{USAGE}"), file=sys.stderr)
         return 2
 
     wants_report = arguments.pop("report", "true").lower() not in ("false", "0")
@@ -197,7 +200,7 @@ def run(words):
         try:
             launch({**arguments, "end_with_master": "false"}, watched)
         except (roslaunch.RLException, roslaunch.XmlParseException) as error:
-            print(f"run: {error}", file=sys.stderr)
+            print(presentable(f"run: {error}"), file=sys.stderr)
             return 2
         code = int(status.read_text()) if status.exists() else None
 
@@ -207,7 +210,7 @@ def run(words):
             print(f"The report on the run could not be made. The run itself ended with code {code}.", file=sys.stderr)
     if out and code not in (None, 2):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # what cannot be read is told by the report
-            summary = json.loads(pathlib.Path(out, "summary.json").read_text())
+            summary = json.loads(pathlib.Path(out, "summary.json").read_text(encoding="utf-8"))
             page = pathlib.Path(out, "report.html")
-            print("\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else [])))
+            print(presentable("\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else []))))
     return 1 if code is None else code

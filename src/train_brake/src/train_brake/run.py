@@ -10,6 +10,7 @@ import numpy
 import yaml
 
 from train_brake.bag import BagError, BagFile, Table, Topic, common_prefix
+from train_brake.run_files import CONFIG, SUMMARY, checked
 
 BAGS = ("train.bag", "train.bag.active")
 
@@ -50,7 +51,7 @@ def parsed(text: str, source: pathlib.Path, parse) -> dict:
 def text_of(file: pathlib.Path) -> str:
     """Empty if there is no such file. @raises BagError"""
     try:
-        return file.read_text() if file.exists() else ""
+        return file.read_text(encoding="utf-8") if file.exists() else ""
     except (OSError, UnicodeDecodeError) as error:
         raise BagError(f"{file} cannot be read: {error}") from None
 
@@ -59,9 +60,21 @@ def load_yaml(text: str) -> dict:
     return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
+def config_from(text: str, source: pathlib.Path) -> Optional[dict]:
+    """A run's configuration as text; None if it is empty. @raises BagError  if it is not one"""
+    config = parsed(text, source, load_yaml)
+    return checked(config, CONFIG, source, "the configuration of a run") if text else None
+
+
+def summary_from(file: pathlib.Path) -> Optional[dict]:
+    """A run's summary.json; None if there is none. @raises BagError  if it is not one"""
+    text = text_of(file)
+    return checked(parsed(text, file, json.loads), SUMMARY, file, "the summary of a run") if text else None
+
+
 def read_couplers(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
     """The columns of a run's couplers.csv: largest forces of all exchanges, and when, for each connection."""
-    with open(file, newline="") as text:
+    with open(file, newline="", encoding="utf-8") as text:
         rows = list(csv.DictReader(text))
     try:
         return {
@@ -141,13 +154,13 @@ class Run:
         """The scenario with everything resolved; None if neither the bag nor its folder holds it."""
         source = self.bag if self._scenario else self._beside("config.yaml")
         belongs = self._scenario or self.bag.name in BAGS
-        return parsed(self._scenario or (text_of(source) if belongs else ""), source, load_yaml) or None
+        return config_from(self._scenario or (text_of(source) if belongs else ""), source)
 
     @functools.cached_property
     def summary(self) -> Optional[dict]:
         """summary.json; None if there is none (a run that was cut off, or a bag alone)."""
         source = self._beside("summary.json")
-        return (parsed(text_of(source), source, json.loads) or None) if self.bag.name in BAGS else None
+        return summary_from(source) if self.bag.name in BAGS else None
 
     @functools.cached_property
     def couplers(self) -> Optional[Dict[str, numpy.ndarray]]:
@@ -163,10 +176,10 @@ class Run:
             Event(
                 float(command["time_s"]),
                 str(command.get("kind")),
-                ", ".join(f"{key} {value}" for key, value in command.items() if key not in ("time_s", "kind")),
+                ", ".join(f"{key} {value}" for key, value in command.items() if key not in ("time_s", "kind") and value is not None),
             )
             for command in (self.config or {}).get("commands") or []
-            if "time_s" in command
+            if command.get("time_s") is not None
         ]
         for stop in (self.summary or {}).get("stops") or []:
             found.append(Event(float(stop["time_s"]), "stop", f"after {stop['distance_m']} m"))

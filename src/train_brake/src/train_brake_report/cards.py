@@ -144,7 +144,7 @@ def table_2(rows: List[PaperRow]) -> Figure:
                       f"{cpu_s}" if two_d else "", f"{row.simulated_s / wall_s:.2f}" if two_d else "", f"{row.wall_s:.1f}",
                       f"{row.simulated_s / row.wall_s:.1f}"])
     return Figure("table_2", "Table 2: computing time",
-                  "The paper's times are those of its 2D train on 243 cores; here one process did, with the recording of the bag. Wall times "
-                  "depend on what else the machine did.",
+                  "The paper's times are those of its 2D train on 243 cores. Those here include the recording of the bag, and depend on the "
+                  "number of threads and wagon nodes and on what else the machine did.",
                   table=Table(["scenario", "model", "simulated [s]", "paper, wall [s]", "paper, CPU [s]",
                                "paper, times real time", "here, wall [s]", "here, times real time"], texts))

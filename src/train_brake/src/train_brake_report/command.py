@@ -6,13 +6,14 @@ import pathlib
 import platform
 import re
 import sys
-from typing import Dict, List, Optional
+from typing import Dict, Iterable, List, Optional
 
 import matplotlib
 import numpy
 
 from train_brake_report import cards, contents, page, paper, style
 from train_brake.bag import BagError
+from train_brake.presentable import accept_all_characters, presentable
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs, scenario_of
 
@@ -84,6 +85,18 @@ def _anchor(text: str) -> str:
     return re.sub(r"\W+", "_", text).strip("_").lower() or "runs"
 
 
+def anchors_of(names: Iterable[str]) -> Dict[str, str]:
+    """A word for ids and names of files for each name; different ones for different names ("a b", "a-b")."""
+    found: Dict[str, str] = {}
+    for name in names:
+        word, number = _anchor(name), 1
+        while word in found.values():
+            number += 1
+            word = f"{_anchor(name)}_{number}"
+        found[name] = word
+    return found
+
+
 class Report:
     """Collects the page group by group, so that only the runs of one group are in memory at a time."""
 
@@ -94,13 +107,13 @@ class Report:
         self.sections: List[page.Section] = []
         self.rows: List[cards.PaperRow] = []
 
-    def add_runs(self, name: str, given: List[pathlib.Path]) -> None:
+    def add_runs(self, name: str, anchor: str, given: List[pathlib.Path]) -> None:
         runs = _read(given, self.options.wagon)
         for run in runs:
             paper.judge(run, self.train_sim)
-        group = Group(_anchor(name) if self.options.by_scenario else "", runs,
+        group = Group(anchor if self.options.by_scenario else "", runs,
                       self.options.wagon or min(paper.WAGON, runs[0].vehicles), self.options.coupler)
-        self.sections.append(page.Section(name or "Figures", f"section_{_anchor(name)}", contents.of_runs(group)))
+        self.sections.append(page.Section(name or "Figures", f"section_{anchor}", contents.of_runs(group)))
         for run in runs:
             card = cards.card_of(run)
             card.label = f"{name}: {card.label}" if name else card.label
@@ -133,8 +146,10 @@ def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.P
     out = options.out or _default_out(options.runs)
     with style.applied():
         report = Report(options, train_sim)
-        for name, given in _grouped(options.runs, options.by_scenario).items():
-            report.add_runs(name, given)
+        groups = _grouped(options.runs, options.by_scenario)
+        anchors = anchors_of(groups)
+        for name, given in groups.items():
+            report.add_runs(name, anchors[name], given)
         report.add_tables()
         if options.vehicle:
             report.add_vehicle()
@@ -146,20 +161,21 @@ def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.P
                     figure.save(options.figures)
     out.parent.mkdir(parents=True, exist_ok=True)
     unfinished = out.with_name(out.name + ".unfinished")
-    unfinished.write_text(html)
+    unfinished.write_text(html, encoding="utf-8")
     unfinished.replace(out)
     return out
 
 
 def main(argv: List[str], train_sim: List[str] = ("rosrun", "train_sim", "train_sim")) -> int:
+    accept_all_characters()
     options = _arguments(argv)
     try:
-        print(f"report: wrote {write_report(options, list(train_sim))}")
+        print(presentable(f"report: wrote {write_report(options, list(train_sim))}"))
     except BagError as error:
-        print("\n".join(f"report: {line}" for line in str(error).splitlines()), file=sys.stderr)
+        print("\n".join(f"report: {line}" for line in presentable(error).split("\n")), file=sys.stderr)
         return 1
     except OSError as error:
-        print(f"report: the page could not be written: {error}", file=sys.stderr)
+        print(presentable(f"report: the page could not be written: {error}"), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130

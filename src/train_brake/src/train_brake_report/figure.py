@@ -9,6 +9,8 @@ from typing import List, Optional
 import matplotlib
 import matplotlib.figure
 
+from train_brake.presentable import presentable
+
 from train_brake_report import style
 
 PNG_DPI = 120
@@ -43,7 +45,7 @@ class Figure:
     def svg(self) -> str:
         """To stand in a page: no prologue, colours as CSS variables that fall back to themselves."""
         text = self._file("svg").decode()
-        text = text[text.index("<svg"):]
+        text = presentable(text[text.index("<svg"):])
         text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
         for colour, name in style.CSS_NAMES.items():
             text = re.sub(rf"(?<=: ){colour}\b", f"var(--{name}, {colour})", text)

@@ -7,6 +7,8 @@ from typing import List
 
 import jinja2
 
+from train_brake.presentable import presentable
+
 from train_brake_report.cards import Card
 from train_brake_report.contents import Item
 from train_brake_report.figure import Figure
@@ -30,12 +32,17 @@ class Section:
         return [item for item in self.items if not isinstance(item, Figure)]
 
 
+def _shown(value: object) -> object:
+    """What stands in the page of a value. (Markup is ours already.)"""
+    return presentable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+
+
 def _is_number(text: str) -> bool:
     return re.fullmatch(r"[-+\u2212]?[\d.]*", text) is not None
 
 
 def render(title: str, cards: List[Card], sections: List[Section], made: str) -> str:
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(str(HERE)), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined, finalize=_shown)
     environment.filters["is_number"] = _is_number
     return environment.get_template("page.html").render(title=title, cards=cards, sections=sections, made=made)

@@ -50,7 +50,7 @@ def _configuration(scenario: str, train_sim: Tuple[str, ...]) -> dict:
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([*train_sim, "run", str(CONFIG / "scenarios" / f"{scenario}.yaml"), "--out", folder, "--model", "ltd",
                         "--set", "duration_s=0.01"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return yaml.safe_load((pathlib.Path(folder) / "config.yaml").read_text())
+        return yaml.safe_load((pathlib.Path(folder) / "config.yaml").read_text(encoding="utf-8"))
 
 
 def difference(value, papers, where: str = "") -> str:

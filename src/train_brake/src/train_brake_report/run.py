@@ -1,12 +1,14 @@
 """A run of the train: its bag, and the config.yaml and summary.json of the same run where there are any."""
 
 import functools
-import json
 import pathlib
+import re
 from typing import List, Optional
 
 import numpy
-from train_brake.run import bag_of, load_yaml, parsed, read_couplers, text_of
+from train_brake.bag import BagError
+from train_brake.presentable import presentable
+from train_brake.run import bag_of, config_from, load_yaml, parsed, read_couplers, summary_from, text_of
 
 from train_brake_report import consist
 from train_brake_report.bag import Recording, read_bag, read_scenario
@@ -31,9 +33,15 @@ class Run:
     def _find_companions(self) -> None:
         """summary.json and config.yaml belong to the train.bag beside them; to another bag if the digests agree."""
         folder = self.bag.parent
-        summary = parsed(text_of(folder / "summary.json"), folder / "summary.json", json.loads) or None
+        is_named = self.bag.name.startswith("train.bag")
+        try:
+            summary = summary_from(folder / "summary.json")
+        except BagError:
+            if is_named:
+                raise
+            summary = None  # of something else than this bag
         proved = summary is not None and self.digest is not None and summary.get("state_digest") == self.digest
-        belong = proved or self.bag.name.startswith("train.bag")
+        belong = proved or is_named
         if belong and summary is not None and self.digest is not None and not proved:
             self.notes.append("The last record of the bag is not the last of the run (summary.json has another digest): the "
                               "end of the bag is missing.")
@@ -43,7 +51,7 @@ class Run:
         self.track_wear_file = folder / "track_wear.csv" if belong and (folder / "track_wear.csv").exists() else None
         self.couplers_file = folder / "couplers.csv" if belong and (folder / "couplers.csv").exists() else None
         self.config_text = self.recording.scenario or (text_of(self.config_file) if self.config_file else "")
-        self.config = parsed(self.config_text, self.bag if self.recording.scenario else self.config_file, load_yaml) or None
+        self.config = config_from(self.config_text, self.bag if self.recording.scenario else self.config_file)
 
     def _judge_records(self) -> None:
         table = self.records
@@ -152,7 +160,7 @@ class Run:
     @property
     def commands(self) -> List[dict]:
         """Those with a time, and those that were given on the way: by a condition of the scenario, or live."""
-        timed = [command for command in (self.config or {}).get("commands") or [] if "time_s" in command]
+        timed = [command for command in (self.config or {}).get("commands") or [] if command.get("time_s") is not None]
         for given in (self.summary or {}).get("commands") or []:
             kind, *value = given["command"].split()
             command = {"time_s": given["time_s"], "kind": kind}
@@ -179,7 +187,8 @@ def label_runs(runs: List[Run]) -> None:
                  lambda r: r.given.stem if r.given.suffix == ".bag" and r.given.stem != "train" else r.bag.parent.name,
                  lambda r: str(r.given)):
         labels = [name(run) for run in runs]
-        if len(set(labels)) == len(runs) and all(labels):
+        if len(set(labels)) == len(runs) and all(label.strip() for label in labels):
             break
     for run, label in zip(runs, labels):
-        run.label = label
+        # Matplotlib keeps labels that begin with "_" out of legends: a space of no width stands before it.
+        run.label = re.sub("^_", "\u200b_", " ".join(presentable(label).split()))

@@ -3,6 +3,7 @@
 import contextlib
 
 import matplotlib
+import matplotlib.ticker
 import numpy
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
@@ -33,7 +34,7 @@ RC = {
     "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.9,
     "lines.linewidth": 1.8, "legend.frameon": False, "figure.facecolor": "none", "axes.facecolor": "none",
     "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "axes.unicode_minus": True, "axes.formatter.useoffset": False,
-    "svg.fonttype": "none", "path.simplify_threshold": 0.3, "image.composite_image": False,
+    "text.parse_math": False, "svg.fonttype": "none", "path.simplify_threshold": 0.3, "image.composite_image": False,
 }
 
 
@@ -41,6 +42,19 @@ RC = {
 def applied():
     with matplotlib.rc_context(RC):
         yield
+
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
+
+
+def powers_of_ten(axis) -> None:
+    """Numbers of a logarithmic axis without the language for formulas, which is off: names may have a "$"."""
+    def power(value: float, _) -> str:
+        exponent = round(numpy.log10(value))
+        return "10" + str(exponent).translate(SUPERSCRIPTS) if numpy.isclose(value, 10.0**exponent) else f"{value:g}"
+
+    axis.set_major_formatter(power)
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def run_line(number: int, runs: int) -> dict:

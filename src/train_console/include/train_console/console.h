@@ -14,14 +14,20 @@ namespace train_console {
 ///   process: the write that meets them fails instead (EPIPE, EFBIG).
 void PrepareProcess();
 
+/// Text of unknown origin (names, paths, what others report) as it may be shown on a terminal and written to a log.
+///
+/// Each control character but line feeds and tabs becomes '?': ASCII's, Unicode's second set (U+0080 to U+009F), and those
+/// that turn the direction of writing (U+202A to U+202E, U+2066 to U+2069). So do bytes that are not UTF-8.
+std::string Presentable(const std::string& text);
+
 /// Writes to the standard error, or not, if that cannot be written. Never throws.
 void WriteMessage(const std::string& text) noexcept;
 
-/// A message to people, see WriteMessage. Never throws.
+/// A message to people: presentable, see WriteMessage. Never throws.
 template <class... Values>
 void Tell(fmt::format_string<Values...> format, Values&&... values) noexcept {
   try {
-    WriteMessage(fmt::format(format, std::forward<Values>(values)...));
+    WriteMessage(Presentable(fmt::format(format, std::forward<Values>(values)...)));
   } catch (...) {  // out of memory: the message is lost, the run is not
   }
 }
@@ -29,10 +35,10 @@ void Tell(fmt::format_string<Values...> format, Values&&... values) noexcept {
 /// Writes to the standard output. A failure does not show here but in FinishOutput.
 void WriteOutput(const std::string& text);
 
-/// A part of a program's output, see WriteOutput.
+/// A part of a program's output: presentable, see WriteOutput.
 template <class... Values>
 void Print(fmt::format_string<Values...> format, Values&&... values) {
-  WriteOutput(fmt::format(format, std::forward<Values>(values)...));
+  WriteOutput(Presentable(fmt::format(format, std::forward<Values>(values)...)));
 }
 
 /// Writes what is left of the output, of whatever part of the program.

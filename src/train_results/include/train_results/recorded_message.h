@@ -25,9 +25,6 @@ struct Difference {
   std::string text;      ///< "vehicle 101, front bolster: body_z_m is 0.0012 in the bag, 0.0013 now"
 };
 
-/// A text that may come from a damaged bag: as it is if it is fit to print, else with question marks.
-std::string Presentable(std::string text);
-
 /// The field `exchange` of a message that begins with a header and that; nothing if it is too short for both.
 std::optional<std::uint64_t> ExchangeOf(const Bytes& message);
 

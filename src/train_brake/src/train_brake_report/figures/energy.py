@@ -89,6 +89,7 @@ def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
                       linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)))
         ends.append((e[-1], name, colour))
     axes.set_ylabel("dissipated [J]")
+    style.powers_of_ten(axes.yaxis)
     if ends:
         axes.set_ylim(bottom=smallest)
         style.label_ends(axes, ends)

@@ -79,6 +79,8 @@ def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label:
     axes.set_ylabel(rows)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label, extend=arrows)
     bar.outline.set_visible(False)
+    if isinstance(image.norm, LogNorm):
+        style.powers_of_ten(bar.ax.yaxis)
     return " Grey: no records." if numpy.isnan(picture).any() else ""
 
 

@@ -43,6 +43,7 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
         axes.annotate(surface, (0, 1), (8, -8), xycoords="axes fraction", textcoords="offset points", va="top",
                       fontsize=13, weight="bold")
         axes.margins(x=0)
+    style.powers_of_ten(panels[0].xaxis)
     for axes in panels[2:]:
         axes.set_xlabel("creepage [%]")
     for axes in panels[::2]:

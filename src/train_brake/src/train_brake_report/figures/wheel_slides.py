@@ -2,7 +2,7 @@
 
 import csv
 import pathlib
-from typing import Dict
+from typing import Dict, Sequence
 
 import numpy
 from train_brake.bag import BagError
@@ -15,13 +15,19 @@ from train_brake_report.run import Run
 KJ, KN = 1e-3, 1e-3
 FLAT_RISK_J = 30e3
 MOST_ROWS = 40
+OF_SLIDES = ("vehicle", "wheelset", "start_s", "end_s", "slid_m", "locked_s", "locked_m", "longest_lock_from_s", "longest_lock_s",
+             "largest_lock_j", "energy_j", "largest_adhesion")
+OF_WEAR = ("from_m", "creep_j", "brake_j")
 
 
-def _columns(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
+def _columns(file: pathlib.Path, needed: Sequence[str]) -> Dict[str, numpy.ndarray]:
     """@raises BagError"""
-    with open(file, newline="") as text:
+    with open(file, newline="", encoding="utf-8") as text:
         reader = csv.DictReader(text)
         rows = list(reader)
+    missing = [name for name in needed if name not in (reader.fieldnames or [])]
+    if missing:
+        raise BagError(f"{file} is damaged: it has no column {', '.join(missing)}")
     try:
         return {name: numpy.array([float(row[name]) for row in rows]) for name in reader.fieldnames or []}
     except (TypeError, ValueError) as error:
@@ -31,14 +37,14 @@ def _columns(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
 def _why_no_slides(run: Run) -> str:
     if run.slides_file is None:
         return "no wheelset slid (there is no slides.csv beside the bag)"
-    return "" if len(_columns(run.slides_file).get("vehicle", [])) else "no wheelset slid"
+    return "" if len(_columns(run.slides_file, OF_SLIDES)["vehicle"]) else "no wheelset slid"
 
 
 def draw_slides(group: Group) -> Figure:
     """Of the first run in which a wheelset slid."""
     runs, not_shown = group.drawable(_why_no_slides)
     run = runs[0]
-    slides = _columns(run.slides_file)
+    slides = _columns(run.slides_file, OF_SLIDES)
     wheelsets = sorted(set(zip(slides["vehicle"].astype(int), slides["wheelset"].astype(int))))
     energy = {w: slides["energy_j"][(slides["vehicle"] == w[0]) & (slides["wheelset"] == w[1])].sum() for w in wheelsets}
     shown = sorted(sorted(wheelsets, key=lambda w: -energy[w])[:MOST_ROWS])
@@ -80,13 +86,13 @@ def draw_wear(group: Group) -> Figure:
     def why_not(run: Run) -> str:
         if run.track_wear_file is None:
             return "there is no track_wear.csv beside the bag"
-        return "" if len(_columns(run.track_wear_file).get("from_m", [])) > 1 else "no wheelset of the 2D model ran"
+        return "" if len(_columns(run.track_wear_file, OF_WEAR)["from_m"]) > 1 else "no wheelset of the 2D model ran"
 
     runs, not_shown = group.drawable(why_not)
     canvas = new_canvas(6.0)
     above, below = canvas.subplots(2, 1, sharex=True)
     for run in runs:
-        wear = _columns(run.track_wear_file)
+        wear = _columns(run.track_wear_file, OF_WEAR)
         for axes, column in ((above, "creep_j"), (below, "brake_j")):
             axes.step(wear["from_m"], KN * wear[column], where="post", label=run.label, **group.line(run))
     above.set_ylabel("sum of T\u03b3 [kN]")
@@ -96,7 +102,7 @@ def draw_wear(group: Group) -> Figure:
         axes.margins(x=0)
     if len(runs) > 1:
         style.legend_above(above)
-    wear = _columns(runs[0].track_wear_file)
+    wear = _columns(runs[0].track_wear_file, OF_WEAR)
     worst = int(wear["creep_j"].argmax())
     caption = (f"Of all wheelsets that ran over each metre, both wheels: energy lost in creep (wear of wheel and rail), and work "
                f"of the braking force on the rail. {runs[0].label}: {KJ * wear['creep_j'].sum():.0f} kJ in creep in all; most, "
