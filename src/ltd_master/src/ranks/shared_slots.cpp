@@ -36,7 +36,7 @@ std::uint32_t ReplyRoom(int vehicles) {
   record.state_digest.resize(count);
   record.details.resize(count);
   record.wheelset_work_j.resize(count * 2 * train_dynamics::kMostWheelsets);
-  record.slides.resize(count * train_dynamics::kMostWheelsets * train_dynamics::kMostSlidesPerWheelset *
+  record.slides.resize(count * train_dynamics::kMostWheelsets * train_dynamics::kSharedSlidesPerWheelset *
                        train_dynamics::kSlideNumbers);
   train_dynamics::BlockSnapshot snapshot;
   snapshot.states.assign(count, train_dynamics::StateRow(train_dynamics::MostStateNumbers()));

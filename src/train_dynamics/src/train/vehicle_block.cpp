@@ -273,7 +273,7 @@ class WatchedVehicles : public Vehicles {
     watch_.Tell(first, ongoing, time_s, *this, slides);
   }
 
-  static constexpr int kNumbers = Vehicles::kNumbers + Watch::kMostNumbers();
+  static constexpr int kNumbers = Vehicles::kNumbers + Watch::kSharedNumbers();
   void Save(int i, StateRow& row) const {
     Vehicles::Save(i, row);
     watch_.Save(i, row);

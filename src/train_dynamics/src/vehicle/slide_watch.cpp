@@ -135,14 +135,11 @@ void SlideWatch<Vehicle>::Tell(int first, bool ongoing, double time_s, const Veh
   has_ended_ = false;
   for (int i = 0; i < batch.size(); ++i) {
     std::vector<SlideEvent>& ended = vehicles_[i].ended;
-    const auto told = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(ended.size()),
-                                               (kMostSlidesPerWheelset - 1) * kWheelsets);
-    for (auto event = ended.begin(); event != ended.begin() + told; ++event) {
-      slides.push_back(*event);
+    for (const SlideEvent& event : ended) {
+      slides.push_back(event);
       slides.back().vehicle = first + i;
     }
-    ended.erase(ended.begin(), ended.begin() + told);
-    has_ended_ |= !ended.empty();
+    ended.clear();
     if (!ongoing || sliding_[i] == 0) continue;
     for (int j = 0; j < kWheelsets; ++j) {
       const Followed& f = vehicles_[i].wheelset[j];

@@ -35,7 +35,8 @@ class VehicleBlock {
   virtual VehicleFault FindFault() const = 0;
 };
 
-/// The most numbers that the state of a vehicle of this program can have.
+/// The most numbers that the state of a vehicle of this program can have, but for slides that have ended and are not told
+/// yet: of those, kSharedSlidesPerWheelset of each wheelset.
 int MostStateNumbers();
 
 /// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model.

@@ -55,7 +55,8 @@ void ForEachSlideField(Function&& function, Structs&... structs) {
 }
 #undef TRAIN_DYNAMICS_CALL
 
-/// The most slides of one wheelset that a record tells; others are told by the next one.
-inline constexpr int kMostSlidesPerWheelset = 4;
+/// Slides of one wheelset for which memory that is shared with the master has room. Records that tell of more, those of
+/// intervals beyond half a second, travel by TCP.
+inline constexpr int kSharedSlidesPerWheelset = 4;
 
 }  // namespace train_dynamics

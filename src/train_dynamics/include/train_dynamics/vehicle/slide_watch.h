@@ -34,8 +34,8 @@ class SlideWatch {
   /// @return whether they were such numbers
   bool Restore(int i, const double* numbers, std::size_t count);
 
-  static constexpr int kMostNumbers() {
-    return kWheelsets * (kFollowed + kMostSlidesPerWheelset * kSlideNumbers);
+  static constexpr int kSharedNumbers() {
+    return kWheelsets * (kFollowed + kSharedSlidesPerWheelset * kSlideNumbers);
   }
 
  private:
