@@ -26,6 +26,7 @@ from std_msgs.msg import String
 TRAIN_SIM, CONFIG = sys.argv[1], pathlib.Path(sys.argv[2])
 EMERGENCY = str(CONFIG / "scenarios" / "emergency.yaml")
 DIP = str(CONFIG / "scenarios" / "dip.yaml")
+SLIDING = str(CONFIG.parent / "test" / "sliding_train.yaml")
 SHORT = ["--set", "duration_s=0.5"]
 
 
@@ -148,6 +149,31 @@ class TrainSimTest(unittest.TestCase):
                          (pathlib.Path(str(self.out) + "2") / "config.yaml").read_text())
         other = self.run_ok(EMERGENCY, "--set", "duration_s=0.3", "--set", "initial_speed_kmh=80.0000001")
         self.assertNotEqual(first["state_digest"], other["state_digest"])
+
+    def test_slides_are_the_same_for_any_threads_and_from_their_middle(self):
+        first = self.run_ok(SLIDING, "--threads", 1, "--out", self.out)
+        self.assertGreater(first["slides"]["slides"], 20)
+        self.assertGreater(first["slides"]["flat_risks"], 3)
+        locked_s = {(w["vehicle"], w["wheelset"]): w["locked_s"] for w in first["slides"]["wheelsets"]}
+        for wheelset in 1, 2, 3, 4:
+            self.assertGreater(locked_s[10, wheelset], 5)  # without protection, to the end
+            self.assertLess(locked_s.get((6, wheelset), 0), 0.5)
+        same = ("state_digest", "slides", "energy", "final_speed_kmh", "max_tension_n", "max_compression_n")
+        for threads in (2, 3):
+            again = self.run_ok(SLIDING, "--threads", threads)
+            for key in same:
+                self.assertEqual(first[key], again[key], key)
+        # Vehicle 10 is locked from the fifth second to the end.
+        begun, resumed = str(self.out) + "_begun", str(self.out) + "_resumed"
+        self.run_ok(SLIDING, "--threads", 3, "--out", begun, "--set", "duration_s=7")
+        whole = self.run_ok("--resume", begun, "--threads", 2, "--set", "duration_s=10", "--out", resumed)
+        self.assertEqual(7, whole["resumed_at_s"])
+        for key in same:
+            self.assertEqual(first[key], whole[key], key)
+        slides = [pathlib.Path(folder, "slides.csv").read_text() for folder in (self.out, resumed)]
+        self.assertEqual(*slides)
+        self.assertIn("same: 501 of 501 records of 10 vehicles", self.verify(self.out, code=0))
+        self.assertIn("same: 150 of 150 records of 10 vehicles from 7 s", self.verify(resumed, code=0))
 
     def test_csv_tables(self):
         self.run_ok(EMERGENCY, "--csv", "--out", self.out, "--set", "duration_s=0.1")
@@ -735,4 +761,4 @@ class TrainSimTest(unittest.TestCase):
 
 if __name__ == "__main__":
     os.environ.pop("TRAIN_BRAKE_CONFIG", None)
-    rosunit.unitrun("ltd_master", "train_sim_test", TrainSimTest)
+    rosunit.unitrun("train_sim", "train_sim_test", TrainSimTest)
