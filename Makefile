@@ -111,6 +111,10 @@ in_workspace = . devel/setup.bash && PATH=/usr/bin:$$PATH
 test-faults: build ## every fault that a run has to survive, at every time of it; a few minutes (root: with full disks)
 	@$(in_workspace) test/faults.py --verbose
 
+.PHONY: test-docs-long
+test-docs-long: build ## every command of the pages, also the long ones, in a clean clone that they build (nightly)
+	@PATH=/usr/bin:$$PATH test/docs_pages.py --long Commands
+
 ROUNDS ?= 100
 .PHONY: test-soak
 test-soak: build ## ROUNDS=100 short trains in a row: nothing may pile up

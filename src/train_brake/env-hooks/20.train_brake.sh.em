@@ -12,3 +12,11 @@ case ":${TRAIN_BRAKE_CONFIG:-}:" in
   *) export TRAIN_BRAKE_CONFIG="${TRAIN_BRAKE_CONFIG:+$TRAIN_BRAKE_CONFIG:}$_train_brake_config" ;;
 esac
 unset _train_brake_config
+
+# `train_sim` without rosrun.
+_train_brake_bin="$CATKIN_ENV_HOOK_WORKSPACE/lib/train_sim"
+case ":$PATH:" in
+  *":$_train_brake_bin:"*) ;;
+  *) export PATH="$_train_brake_bin:$PATH" ;;
+esac
+unset _train_brake_bin
