@@ -3,7 +3,7 @@
 
     tools/paper_lugre.py OUT_FOLDER [--starts 36] [--jobs 2]
 
-The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; some 40 minutes on two cores. Runs that OUT_FOLDER
+The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; a few minutes on two cores. Runs that OUT_FOLDER
 holds already are not repeated.
 """
 import argparse
