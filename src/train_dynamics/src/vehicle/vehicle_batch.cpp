@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -204,20 +205,18 @@ bool VehicleBatch<Vehicle>::AnySlip(double share, double slowest_mps) const {
   } else {
     const int lanes = kernels_.lanes;
     const double radius_m = vehicle_.rolling.radius_m;
-    bool any = false;
+    std::int64_t any = 0;  // as wide as a double: compilers make vector code of the loop
     for (int pack = 0; pack < packs_; ++pack) {
       const auto* state =
           reinterpret_cast<const double*>(&states_[static_cast<std::size_t>(pack) * lanes * sizeof(State)]);
-      for (int wheelset = 0; wheelset < Vehicle::kWheelsets; ++wheelset) {
-        const double* speed = state + (Vehicle::kFirstSpeed + wheelset) * lanes;
-        const double* spin = state + (Vehicle::kFirstSpin + wheelset) * lanes;
-        for (int lane = 0; lane < lanes; ++lane) {
-          const double size = std::abs(speed[lane]), slip = std::abs(speed[lane] - radius_m * spin[lane]);
-          any |= (slip > share * size) & (slip > share * slowest_mps);
-        }
+      const double* speed = state + Vehicle::kFirstSpeed * lanes;  // [wheelset][lane]
+      const double* spin = state + Vehicle::kFirstSpin * lanes;
+      for (int i = 0; i < Vehicle::kWheelsets * lanes; ++i) {
+        const double slip = std::abs(speed[i] - radius_m * spin[i]);
+        any |= slip > share * std::max(std::abs(speed[i]), slowest_mps);
       }
     }
-    return any;
+    return any != 0;
   }
 }
 

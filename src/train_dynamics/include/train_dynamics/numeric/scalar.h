@@ -10,12 +10,12 @@
 /// + - * /, comparisons (which yield a MaskOf<T>), double constants, and the functions below; it must not
 /// branch on a T. Masks are combined with & | and !, never with && or ||, because every lane is computed.
 /// (A condition on a parameter, the same in every lane, is an ordinary `if`.)
-///
+/// @code
 ///     template <class T>
 ///     T Stop(T gap_m, double stiffness_n_per_m) {
 ///       return Select(gap_m < 0.0, -stiffness_n_per_m * gap_m, 0.0);
 ///     }
-///
+/// @endcode
 /// Every function returns in each lane the bits that the double version returns. That holds for NaN too
 /// (except for its sign and payload, which no rule of the language fixes).
 namespace train_dynamics {

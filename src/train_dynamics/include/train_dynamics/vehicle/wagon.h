@@ -157,11 +157,9 @@ struct BogieVehicle {
   std::array<double, kWheelsets> driven;  ///< 1 or 0; 1 for all of a vehicle without traction
   double driven_share;                    ///< of one of them in traction and dynamic brake
 
-  /// Whether no torque on a wheelset reacts on the vehicle, no nest has a damper, no wheelset a drive, and the shoes are
-  /// plain, as in the paper's wagon.
+  /// Whether no nest has a damper, no wheelset a drive, and the shoes are plain, as in the paper's wagon.
   bool IsPlain() const {
-    return params.brake_rigging.reaction == BrakeReaction::kNone &&
-           params.spring_nest.damping_ns_per_m == 0.0 && !params.traction && rigging.is_plain;
+    return params.spring_nest.damping_ns_per_m == 0.0 && !params.traction && rigging.is_plain;
   }
 };
 

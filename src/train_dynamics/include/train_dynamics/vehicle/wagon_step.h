@@ -350,7 +350,7 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
 ///
 /// S, the shoes' friction, on the carbody where they hang on it. Traction F_t and dynamic brake F_db are those of the
 /// driven wheelsets. Curving resistance is a force on the wheelsets' centres and reacts on no body.
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                   const WheelsetStep<T, kPerBogie>& wheelsets, BodyVector<T, kPerBogie>& force) {
   const BrakeReaction reaction = w.params.brake_rigging.reaction;
@@ -360,8 +360,12 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
     T shoes(0.0), others(0.0);
     for (int i = kPerBogie * bogie; i < kPerBogie * (bogie + 1); ++i) {
       shoes = shoes + wheelsets.mobilised[i] * wheelsets.shoes.turning[i];
-      others = others + (wheelsets.mobilised[i] * (outer.rolling + w.driven[i] * outer.dynamic_brake) -
-                         wheelsets.traction[i]);
+      if (kAll) {
+        others = others + (wheelsets.mobilised[i] * (outer.rolling + w.driven[i] * outer.dynamic_brake) -
+                           wheelsets.traction[i]);
+      } else {
+        others = others + wheelsets.mobilised[i] * outer.rolling;
+      }
     }
     const int frame = kFrontFrame + bogie;
     const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
@@ -379,7 +383,7 @@ void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   const BrakeReaction reaction = w.params.brake_rigging.reaction;
   // Paths at the tread [m]: relative to the rail, to the frame, to what the shoes hang on.
   std::array<T, kWheelsetsOf<kPerBogie>> of_frame = wheelsets.path, of_shoes = wheelsets.path;
-  if (kAll && reaction != BrakeReaction::kNone) {
+  if (reaction != BrakeReaction::kNone) {
     const double half = 0.5 * dt * w.rolling.radius_m;
     const T carbody = half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
     for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -477,7 +481,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   AddOuterForces(w, outer, force);
 
   const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets<kAll>(w, rail, outer, force, dt, v0, v1, output);
-  if (kAll) AddReactions(w, outer, wheelsets, force);
+  AddReactions<kAll>(w, outer, wheelsets, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
