@@ -138,6 +138,12 @@ format: ## format the C++ code in place (clang-format 14)
 check-format: ## complain about C++ code that is not formatted
 	@$(sources) | xargs clang-format --dry-run --Werror
 
+.PHONY: doc
+doc: ## reference of the C++ headers in build/doc/html (Doxygen); any warning is an error
+	@tools/install_packages.sh packages_doc.txt
+	@mkdir -p build && doxygen Doxyfile
+	@echo build/doc/html/index.html
+
 .PHONY: tidy
 tidy: build ## static analysis (clang-tidy 14)
 	@$(release) tests $(quietly)
