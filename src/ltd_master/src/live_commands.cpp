@@ -26,10 +26,16 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
 
 }  // namespace
 
-std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& message) {
-  const DriverCommand command = train_results::CommandOf(message, 0);
+DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message,
+                                  std::uint64_t exchange) const {
+  const DriverCommand command = train_results::CommandOf(message, exchange);
   const std::string why_not = WhyNot(command, scenario_);
   if (!why_not.empty()) throw std::invalid_argument(why_not);
+  return command;
+}
+
+std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& message) {
+  const DriverCommand command = Judge(message, 0);
   const std::lock_guard<std::mutex> lock(mutex_);
   received_.push_back({command, next_exchange_});
   return next_exchange_;

@@ -99,6 +99,16 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.recover = parameters.IsFirstOf("on_lost_node", "recover", "stop");
   options.recovery_timeout_s = parameters.NonNegative("recovery_timeout_s", 60.0);
   options.shared_memory = parameters.Flag("shared_memory", true);
+  options.driver.node = parameters.Text("driver", "");
+  options.driver.control_period_s = parameters.NonNegative("control_period_s", 0.1);
+  options.driver.deadline_s = parameters.NonNegative("driver_timeout_s", 30.0);
+  const std::string on_lost_driver = parameters.Choice("on_lost_driver", {"emergency", "hold", "stop"});
+  options.driver.on_lost = on_lost_driver == "emergency" ? OnLostDriver::kEmergency
+                           : on_lost_driver == "hold"    ? OnLostDriver::kHold
+                                                         : OnLostDriver::kStop;
+  options.driver.sight_m = parameters.NonNegative("driver_sight_m", 5000.0);
+  options.driver.sees_couplers = parameters.Flag("driver_sees_couplers", false);
+  options.driver.start_timeout_s = options.startup_timeout_s;
   const std::string global_clock = parameters.Choice("global_clock", {"auto", "true", "false"});
   options.global_clock =
       global_clock == "auto" ? SimulatedClock::OwnsGlobalClock(train_namespace) : global_clock == "true";
@@ -122,6 +132,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
       scenario_(resumed_ ? resumed_->scenario
                          : train_dynamics::config::LoadScenario(options.scenario, options.overrides)),
       control_(options.start_paused, options.real_time_factor),
+      run_id_(NewRunId()),
       live_(node),
       clock_(node, options.global_clock),
       state_topic_(node, "state", kQueue),
@@ -198,16 +209,29 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   transport.snapshot_exchanges =
       std::lround(std::clamp(kSnapshotInterval / scenario.exchange_interval_s, 1.0, kMostExchanges));
   transport.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
-  auto ranks =
-      std::make_unique<RosTransport>(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks),
-                                     NewRunId(), scenario, transport);
+  auto ranks = std::make_unique<RosTransport>(
+      train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks), run_id_, scenario, transport);
   ranks_ = ranks.get();
   last_count_.assign(ranks->ranks().size(), 0);
   return ranks;
 }
 
+std::unique_ptr<LockstepDriver> MasterNode::MakeDriver() {
+  if (options_.driver.node.empty()) return nullptr;
+  LockstepDriverOptions options = options_.driver;
+  options.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
+  if (options.on_lost == OnLostDriver::kEmergency && !scenario_.params.pressure_table.empty()) {
+    throw std::invalid_argument(
+        "parameter on_lost_driver must be hold or stop: the pressures of the brake come from pressure_table, "
+        "which obeys "
+        "no emergency");
+  }
+  return std::make_unique<LockstepDriver>(options, run_id_, scenario_.params.exchange_interval_s);
+}
+
 int MasterNode::Run() {
   const train_dynamics::ScenarioParams& scenario = scenario_.params;
+  driver_ = MakeDriver();
   const std::unique_ptr<train_results::RunOutput> output =
       resumed_ ? std::make_unique<train_results::RunOutput>(options_.output, *resumed_)
                : std::make_unique<train_results::RunOutput>(options_.output, scenario_.files, scenario);
@@ -231,6 +255,8 @@ int MasterNode::Run() {
     Go(run);
   } catch (const WaitInterrupted&) {  // by what Ending tells
   } catch (const RankFailure& e) {
+    if (!Ending()) rank_fault = e.what();
+  } catch (const DriverFailure& e) {
     if (!Ending()) rank_fault = e.what();
   }
   control_.End();
@@ -272,19 +298,11 @@ void MasterNode::Go(train_run::TrainRun& run) {
     return true;
   };
   hooks.admits = [&] {
-    if (control_.Admit(master.time_s())) {
-      for (const train_dynamics::DriverCommand& command : commands_.Take(master.exchange())) {
-        try {
-          run.Command(command);
-        } catch (const std::invalid_argument& e) {
-          ROS_WARN("the command %s is not given: %s", command.Text().c_str(), Presentable(e.what()).c_str());
-        }
-      }
-      return true;
-    }
+    if (control_.Admit(master.time_s())) return true;
     Settle(master.time_s());
     return false;
   };
+  hooks.begins = [&] { GiveCommands(run); };
   hooks.exchanged = [&](double wall_s) {
     statistics_.Add(wall_s);
     if (ranks_ != nullptr) {
@@ -303,6 +321,43 @@ void MasterNode::Go(train_run::TrainRun& run) {
     last_diagnostics = Clock::now();
   };
   run.Go(hooks, kPatience);
+}
+
+void MasterNode::GiveCommands(train_run::TrainRun& run) {
+  const std::uint64_t exchange = run.master().exchange();
+  for (const train_dynamics::DriverCommand& command : commands_.Take(exchange)) {
+    try {
+      run.Command(command);
+    } catch (const std::invalid_argument& e) {
+      ROS_WARN("the command %s is not given: %s", command.Text().c_str(), Presentable(e.what()).c_str());
+    }
+  }
+  if (driver_ != nullptr && driver_->IsDue(exchange)) AskDriver(run);
+}
+
+void MasterNode::AskDriver(train_run::TrainRun& run) {
+  const LockstepDriverOptions& options = driver_->options();
+  train_brake_msgs::DriverView view;
+  train_results::Convert(run.master().View(options.sight_m, options.sees_couplers), view);
+  LockstepDriver::Commands commands = driver_->Ask(view);
+  if (driver_->IsLost() && options.on_lost == OnLostDriver::kEmergency) {
+    train_brake_msgs::DriverCommand command;
+    if (!run.master().locomotives().empty()) {
+      command.kind = "throttle";  // notch 0: the dynamic brake is off, too
+      commands.push_back(command);
+    }
+    command.kind = "emergency";
+    commands.push_back(command);
+  }
+  for (const train_brake_msgs::DriverCommand& message : commands) {
+    try {
+      run.Command(commands_.Judge(message, view.exchange));
+    } catch (const std::invalid_argument& e) {
+      ROS_WARN("exchange %lu: a command of the driver %s is refused: %s", view.exchange,
+               driver_->name().c_str(), e.what());
+      driver_->Refuse(e.what());
+    }
+  }
 }
 
 void MasterNode::Publish(const TrainRecord& record) {
@@ -365,6 +420,11 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
   if (commands_.count() > 0) {
     add("live_commands", std::to_string(commands_.count()));
     add("live_command_latency_max_exchanges", std::to_string(commands_.largest_latency()));
+  }
+  if (driver_ != nullptr) {
+    add("driver", driver_->IsLost() ? "lost: " + driver_->lost() : driver_->name());
+    add("driver_late_answers", std::to_string(driver_->late_answers()));
+    if (driver_->IsLost()) status.level = diagnostic_msgs::DiagnosticStatus::WARN;
   }
   if (ranks_ != nullptr) {
     const auto slowest = std::max_element(last_count_.begin(), last_count_.end()) - last_count_.begin();

@@ -111,6 +111,42 @@ void Convert(const train_dynamics::GivenCommand& given, double time_s,
   message.live = given.is_live;
 }
 
+void Convert(const train_dynamics::DriverView& view, train_brake_msgs::DriverView& message) {
+  message.exchange = view.exchange;
+  message.time_s = view.time_s;
+  message.position_m = view.position_m;
+  message.front_m = view.front_m;
+  message.rear_m = view.rear_m;
+  message.speed_mps = view.speed_mps;
+  message.speed_limit_mps = view.speed_limit_mps;
+  message.mean_grade = view.mean_grade;
+  const auto split = [](const std::vector<train_dynamics::PlaceAhead>& places, auto& from_m, auto& values) {
+    from_m.clear();
+    values.clear();
+    for (const train_dynamics::PlaceAhead& place : places) {
+      from_m.push_back(place.from_m);
+      values.push_back(place.value);
+    }
+  };
+  split(view.limits_ahead, message.limit_from_m, message.limit_mps);
+  split(view.grades_ahead, message.grade_from_m, message.grade);
+  message.station_m.clear();
+  message.station.clear();
+  for (const train_dynamics::StationParams& station : view.stations_ahead) {
+    message.station_m.push_back(station.position_m);
+    message.station.push_back(station.name);
+  }
+  message.throttle_notch = view.throttle_notch;
+  message.dynamic_brake_notch = view.dynamic_brake_notch;
+  message.effort_n = view.effort_n;
+  message.reduction_kpa = view.reduction_kpa;
+  message.emergency = view.emergency;
+  message.brake_pipe_kpa = view.brake_pipe_kpa;
+  message.cylinder_kpa = view.cylinder_kpa;
+  message.mean_cylinder_kpa = view.mean_cylinder_kpa;
+  message.coupler_force_n = view.coupler_force_n;
+}
+
 train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message,
                                         std::uint64_t exchange) {
   train_dynamics::DriverCommand command;

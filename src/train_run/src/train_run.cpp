@@ -42,7 +42,7 @@ void TrainRun::Go(const RunHooks& hooks, std::chrono::duration<double> patience)
     Begin();
     Loop(hooks);
     ending_ = !master_.Done();
-    if (ending_ && output_ != nullptr) LeaveCheckpoint(patience);
+    if (ending_ && output_ != nullptr) LeaveCheckpoint(hooks, patience);
   } catch (const train_dynamics::SimulationFault& e) {
     fault_ = e.what();
   } catch (const WriteError& e) {
@@ -63,25 +63,26 @@ void TrainRun::Loop(const RunHooks& hooks) {
   while (!master_.Done() && !hooks.ends()) {
     if (hooks.admits()) {
       const Clock::time_point begin = Clock::now();
-      Exchange(false);
+      Exchange(hooks, false);
       hooks.exchanged(std::chrono::duration<double>(Clock::now() - begin).count());
     }
     hooks.turned();
   }
 }
 
-bool TrainRun::Exchange(bool wanted) {
+bool TrainRun::Exchange(const RunHooks& hooks, bool wanted) {
+  hooks.begins();
   const bool leaves_checkpoint = output_ != nullptr && output_->AskForCheckpoint(master_, wanted);
   master_.Exchange();
   if (leaves_checkpoint) Write([&] { output_->KeepCheckpoint(master_, summary_); });
   return leaves_checkpoint;
 }
 
-void TrainRun::LeaveCheckpoint(std::chrono::duration<double> patience) {
+void TrainRun::LeaveCheckpoint(const RunHooks& hooks, std::chrono::duration<double> patience) {
   const Clock::time_point begin = Clock::now();
   while (!master_.Done() && Clock::now() - begin < patience) {
     const bool at_record = master_.RecordIsNext();
-    Exchange(true);
+    Exchange(hooks, true);
     if (at_record) return;  // with a checkpoint, unless none are kept
   }
 }

@@ -269,11 +269,10 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::vector<train_dynamics::DriverCommand> live = recorded.LiveCommands();
   std::size_t next_live = 0;
   while (next_live < live.size() && *live[next_live].exchange < static_cast<double>(first)) ++next_live;
-  hooks.admits = [&] {
+  hooks.begins = [&] {
     for (; next_live < live.size() && *live[next_live].exchange <= static_cast<double>(master.exchange());
          ++next_live)
       run.Command(live[next_live]);
-    return true;
   };
   hooks.ends = [&] { return comparison.Finished() || train_run::Interrupt() != 0; };
   run.Go(hooks);

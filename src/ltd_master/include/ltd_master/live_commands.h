@@ -18,8 +18,13 @@ class LiveCommands {
   /// Keeps a reference.
   explicit LiveCommands(const train_dynamics::ScenarioParams& scenario) : scenario_(scenario) {}
 
-  /// @return the exchange at whose start it is given at the earliest
+  /// A command for the start of an exchange.
   /// @throws std::invalid_argument  naming what is wrong: no such kind, a number out of range, no such locomotive
+  train_dynamics::DriverCommand Judge(const train_brake_msgs::DriverCommand& message,
+                                      std::uint64_t exchange) const;
+
+  /// @return the exchange at whose start it is given at the earliest
+  /// @throws std::invalid_argument as Judge
   std::uint64_t Receive(const train_brake_msgs::DriverCommand& message);
 
   /// The run's side: those that are due before the exchange that begins now; it is the one of this number.

@@ -19,6 +19,7 @@
 #include "ltd_master/exchange_statistics.h"
 #include "ltd_master/live_commands.h"
 #include "ltd_master/live_topics.h"
+#include "ltd_master/lockstep_driver.h"
 #include "ltd_master/ranks/ros_transport.h"
 #include "ltd_master/record_topic.h"
 #include "ltd_master/run_control.h"
@@ -51,6 +52,7 @@ struct MasterOptions {
   bool recover = true;  ///< bring lost wagon nodes back
   double recovery_timeout_s = 60.0;
   bool shared_memory = true;
+  LockstepDriverOptions driver;
 
   /// @param train_namespace  of the node
   /// @throws std::invalid_argument naming all parameters that are wrong or not known
@@ -76,8 +78,12 @@ class MasterNode {
  private:
   void TellWhatIsNotUsed() const;
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
-  /// Paced by control_, with diagnostics each second. @throws WaitInterrupted, RankFailure
+  std::unique_ptr<LockstepDriver> MakeDriver();
+  /// Paced by control_, with diagnostics each second. @throws WaitInterrupted, RankFailure, DriverFailure
   void Go(train_run::TrainRun& run);
+  /// What drivers do at the start of the next exchange: live commands first, then the driver in lockstep.
+  void GiveCommands(train_run::TrainRun& run);
+  void AskDriver(train_run::TrainRun& run);
   void Publish(const train_dynamics::TrainRecord& record);
   /// While the train stands: what those need who come now.
   void Settle(double simulated_s);
@@ -101,7 +107,9 @@ class MasterNode {
   std::optional<train_results::ResumedRun> resumed_;
   train_dynamics::config::LoadedScenario scenario_;
   RunControl control_;
-  RosTransport* ranks_ = nullptr;  ///< null: no wagon nodes
+  std::uint64_t run_id_;
+  RosTransport* ranks_ = nullptr;           ///< null: no wagon nodes
+  std::unique_ptr<LockstepDriver> driver_;  ///< null: none is asked
   ExchangeStatistics statistics_;
   std::vector<unsigned> last_count_;  ///< [rank] how often it replied last
   unsigned late_exchanges_ = 0;

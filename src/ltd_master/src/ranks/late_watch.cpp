@@ -4,14 +4,13 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <thread>
 
 namespace ltd_master {
 namespace {
 
-constexpr std::array<double, 3> kStages = {1.0, 3.0, 10.0};  // [s] of waiting, each worth a warning
-constexpr int kNamed = 5;                                    // ranks that one message names
+constexpr int kNamed = 5;  // ranks that one message names
 constexpr std::chrono::milliseconds kGrace(1000);
 
 /// "/train/wagon_007 (vehicles 7-12), exchange 17: closed the connection"
@@ -37,22 +36,22 @@ std::string NamesOf(const std::vector<train_dynamics::Rank>& ranks, const std::v
 
 LateWatch::LateWatch(const std::vector<train_dynamics::Rank>& ranks, std::string when, double deadline_s,
                      const std::function<bool()>& interrupted)
-    : ranks_(ranks), when_(std::move(when)), deadline_s_(deadline_s), interrupted_(interrupted) {}
+    : ranks_(ranks), when_(std::move(when)), interrupted_(interrupted), patience_(deadline_s, interrupted) {}
 
 bool LateWatch::Look(const std::vector<bool>& pending) {
-  if (interrupted_()) throw WaitInterrupted();
-  const double waited_s = std::chrono::duration<double>(Clock::now() - start_).count();
-  if (deadline_s_ > 0.0 && waited_s > deadline_s_) return false;
-  if (stage_ == kStages.size() || waited_s < kStages[stage_]) return true;
-  ROS_WARN("%s: waiting for %.0f s already for %ld of %zu wagon nodes: %s", when_.c_str(), kStages[stage_],
-           std::count(pending.begin(), pending.end(), true), ranks_.size(), NamesOf(ranks_, pending).c_str());
-  ++stage_;
-  return true;
+  return patience_.Look([&](double waited_s) {
+    ROS_WARN("%s: waiting for %.0f s already for %ld of %zu wagon nodes: %s", when_.c_str(), waited_s,
+             std::count(pending.begin(), pending.end(), true), ranks_.size(),
+             NamesOf(ranks_, pending).c_str());
+  });
 }
 
-std::string LateWatch::NoReply() const { return fmt::format("no reply within {:g} s", deadline_s_); }
+std::string LateWatch::NoReply() const {
+  return fmt::format("no reply within {:g} s", patience_.deadline_s());
+}
 
 void LateWatch::GiveUp(const std::vector<LostRank>& lost) const {
+  using Clock = std::chrono::steady_clock;
   for (const Clock::time_point end = Clock::now() + kGrace; Clock::now() < end;) {
     if (interrupted_()) throw WaitInterrupted();
     std::this_thread::sleep_for(kGrace / 50);

@@ -3,6 +3,7 @@
 #include <std_msgs/String.h>
 #include <train_brake_msgs/BrakePressures.h>
 #include <train_brake_msgs/DriverCommand.h>
+#include <train_brake_msgs/DriverView.h>
 #include <train_brake_msgs/EnergyLedger.h>
 #include <train_brake_msgs/GivenCommand.h>
 #include <train_brake_msgs/InTrainForces.h>
@@ -29,6 +30,8 @@ void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::Wa
 /// @param time_s  of the first record after it
 void Convert(const train_dynamics::GivenCommand& given, double time_s,
              train_brake_msgs::GivenCommand& message);
+
+void Convert(const train_dynamics::DriverView& view, train_brake_msgs::DriverView& message);
 
 /// A command for the start of an exchange, from a message.
 /// @throws std::invalid_argument if there is no such kind, or the number that belongs to it is missing

@@ -27,6 +27,8 @@ struct RunHooks {
   std::function<bool()> ends = [] { return false; };
   /// Whether the next exchange may begin now. If not, it has waited a moment, and is asked again after `ends`.
   std::function<bool()> admits = [] { return true; };
+  /// Called right before each exchange, those between an interruption and its checkpoint included: the place for Command.
+  std::function<void()> begins = [] {};
   /// Called after each exchange, with its wall time [s].
   std::function<void(double)> exchanged = [](double) {};
   /// Called once in each turn of the loop, whether or not there was an exchange.
@@ -83,9 +85,9 @@ class TrainRun {
  private:
   void Begin();
   void Loop(const RunHooks& hooks);
-  void LeaveCheckpoint(std::chrono::duration<double> patience);
+  void LeaveCheckpoint(const RunHooks& hooks, std::chrono::duration<double> patience);
   /// One exchange, with its checkpoint where one is due or `wanted`. @return whether there was one
-  bool Exchange(bool wanted);
+  bool Exchange(const RunHooks& hooks, bool wanted);
 
   const train_dynamics::ScenarioParams& scenario_;
   const train_dynamics::TrainCheckpoint* from_;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "ltd_master/patience.h"
 #include "train_dynamics/train/ranks.h"
 
 namespace ltd_master {
@@ -33,12 +33,6 @@ struct LostRank {
   std::string why;  ///< "closed the connection"
 };
 
-/// The end of a wait that somebody asked for. What was waited for has not come.
-class WaitInterrupted : public std::runtime_error {
- public:
-  WaitInterrupted() : std::runtime_error("interrupted while waiting for wagon nodes") {}
-};
-
 /// The chosen ranks with their vehicles, the first few of them: "/train/wagon_007 (vehicles 7-12), ...".
 std::string NamesOf(const std::vector<train_dynamics::Rank>& ranks, const std::vector<bool>& chosen);
 
@@ -53,7 +47,7 @@ class LateWatch {
             const std::function<bool()>& interrupted);
 
   /// For how long to wait before looking at the watch [s].
-  static constexpr double kGlance = 0.1;
+  static constexpr double kGlance = Patience::kGlance;
 
   /// Looks at the watch.
   /// @param pending  [rank] whether it is still waited for
@@ -67,17 +61,13 @@ class LateWatch {
 
   std::string NoReply() const;  ///< "no reply within 30 s"
   const std::string& when() const { return when_; }
-  bool was_late() const { return stage_ > 0; }  ///< whether it has warned
+  bool was_late() const { return patience_.has_warned(); }  ///< whether it has warned
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   const std::vector<train_dynamics::Rank>& ranks_;
   const std::string when_;
-  const double deadline_s_;
   const std::function<bool()>& interrupted_;
-  const Clock::time_point start_ = Clock::now();
-  std::size_t stage_ = 0;
+  Patience patience_;
 };
 
 }  // namespace ltd_master

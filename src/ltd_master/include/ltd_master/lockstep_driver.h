@@ -1,0 +1,79 @@
+#pragma once
+
+#include <train_brake_msgs/Drive.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ltd_master/ranks/service_link.h"
+
+namespace ltd_master {
+
+/// What becomes of a train whose driver is lost.
+enum class OnLostDriver {
+  kEmergency,  ///< the emergency brake is applied, traction and dynamic brake are off
+  kHold,       ///< everything stays as the driver has left it
+  kStop,       ///< the run ends
+};
+
+struct LockstepDriverOptions {
+  std::string node;               ///< whose service ~drive is asked; empty: there is no such driver
+  double control_period_s = 0.1;  ///< simulated; a multiple of the exchange interval
+  double start_timeout_s = 60.0;  ///< [wall time] for the driver to come up; 0: for ever
+  double deadline_s = 30.0;       ///< [wall time] for each answer; 0: for ever
+  OnLostDriver on_lost = OnLostDriver::kEmergency;
+  double sight_m = 5000.0;                                   ///< how far he sees and knows the line
+  bool sees_couplers = false;                                ///< he is shown the forces in all couplers
+  std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
+};
+
+/// A driver who ends the run: he did not come up, speaks otherwise, or is lost where that is to end it.
+class DriverFailure : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A driver in another node, in lockstep with the train: asked at the start of every control period, and waited for
+/// (Drive.srv). Who is late is named after 1, 3 and 10 s, and lost at the deadline; he is lost, too, with his connection, and
+/// when his answer cannot be used. A lost driver is not asked again.
+class LockstepDriver {
+ public:
+  using Commands = std::vector<train_brake_msgs::DriverCommand>;
+
+  /// @param exchange_interval_s  of the run
+  /// @throws std::invalid_argument if the control period is not a multiple of it
+  LockstepDriver(LockstepDriverOptions options, std::uint64_t run_id, double exchange_interval_s);
+
+  /// Whether he is to be asked before that exchange.
+  bool IsDue(std::uint64_t exchange) const { return lost_.empty() && exchange % exchanges_ == 0; }
+  /// Waits until his service can be called. Names him every 5 s.
+  /// @throws DriverFailure, WaitInterrupted
+  void Connect();
+  /// His answer. Where he is lost it says so, and `is_lost` is told by IsLost().
+  /// @throws DriverFailure, WaitInterrupted
+  Commands Ask(const train_brake_msgs::DriverView& view);
+  /// He shall know with the next request what the train could not obey.
+  void Refuse(const std::string& sentence);
+
+  bool IsLost() const { return !lost_.empty(); }
+  const std::string& lost() const { return lost_; }  ///< why he is lost; empty: he is not
+  const std::string& name() const { return options_.node; }
+  const LockstepDriverOptions& options() const { return options_; }
+  unsigned late_answers() const { return late_answers_; }  ///< that took a second or longer
+
+ private:
+  void Call(std::uint64_t exchange);
+  void Lose(std::uint64_t exchange, const std::string& why);
+
+  LockstepDriverOptions options_;
+  std::uint64_t exchanges_ = 1;  ///< in a control period
+  train_brake_msgs::Drive call_;
+  std::unique_ptr<ServiceLink> link_;
+  std::string lost_;
+  unsigned late_answers_ = 0;
+};
+
+}  // namespace ltd_master
