@@ -83,7 +83,7 @@ class LockstepDriver(LaunchTest):
         applied = [command for _, command in self.given(launch)]
         self.assertGreater(len(applied), 1)
         self.assertTrue(all(command.startswith("apply") for command in applied))
-        self.assertLess(abs(summary["stopping_distance_m"] - 700), 30, summary)
+        self.assertLess(abs(summary["stop_distance_m"] - 700), 30, summary)
 
     def test_a_killed_driver_triggers_the_policy(self):
         for policy, code, consequence in (("emergency", 0, "The emergency brake is applied"), ("hold", 0, "as he has left it"),

@@ -216,42 +216,6 @@ class SeveralLaunches(LaunchTest):
         code, log = self.run_command(str(SHORT_TRAIN), "nodes:=2", "startup_timeout:=2", "vehicles:=5", folder=self.folder)
         self.assertEqual(2, code, log)  # the master counts for itself
 
-    def test_own_vehicles_in_python_run_in_a_train(self):
-        config = SHORT_TRAIN.parent.parent / "config"
-        scenario = self.folder / "four.yaml"
-        scenario.write_text(f"base: {SHORT_TRAIN}\nduration_s: 1\ndetail_vehicles: []\ntrain:\n  name: four\n"
-                            f"  connection: {config}/couplers/calibrated.yaml\n  consist:\n"
-                            f"    - {{vehicle: {config}/vehicles/ore_wagon.yaml, count: 2, locomotive: true}}\n"
-                            f"    - {{vehicle: {config}/vehicles/ore_wagon.yaml, count: 2, model: ltd}}\n")
-        digests, mass_kg = [], 160e3
-        for name in ("first", "second"):
-            own = subprocess.Popen(["rosrun", "train_brake", "own_vehicle", "__ns:=/train", "__name:=wagon_003",
-                                    f"_mass_kg:={mass_kg}"], env=self.master.environment)
-            code, log = self.run_command(str(scenario), name, "nodes:=2", "own:=wagon_003", "on_lost_node:=stop",
-                                         "checkpoint_interval:=0", folder=self.folder)
-            own.terminate()
-            own.wait(10)
-            self.assertEqual(0, code, log)
-            out = self.folder / name
-            digests.append(json.loads((out / "summary.json").read_text())["state_digest"])
-        self.assertEqual(*digests)
-        states, ledgers = [], []
-        with rosbag.Bag(str(out / "train.bag")) as bag:
-            for topic, message, _ in bag.read_messages():
-                {"/train/state": states, "/train/energy_ledger": ledgers}.get(topic, []).append(message)
-        self.assertGreater(len(states), 2)
-        # Nothing but the couplers' work and the shoes' heat changes the kinetic energy: the ledger closes.
-        self.assertGreater(len(ledgers), 2)
-        last = ledgers[-1]
-        self.assertLess(abs(last.residual_j), 1e-6 * last.kinetic_j)
-        self.assertGreater(states[-1].shoe_force_n[2], 0)
-        # Way is the integral of speed.
-        for i in (2, 3):
-            way = states[-1].position_m[i] - states[0].position_m[i]
-            trapezoid = sum((b.speed_mps[i] + a.speed_mps[i]) / 2 * (b.header.stamp - a.header.stamp).to_sec()
-                            for a, b in zip(states, states[1:]))
-            self.assertLess(abs(way - trapezoid), 1e-3 * way)
-
     def test_set_carries_blanks_lists_and_maps(self):
         settings = "set:=name=\"two words\" detail_vehicles=[1, 3] duration_s=0.1"
         launch = self.launch("run", settings, "nodes:=1")

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "ltd_master/ranks/mixed_transport.h"
 #include "ltd_master/settings.h"
 #include "train_console/console.h"
 #include "train_dynamics/train/in_process_train.h"
@@ -195,9 +196,22 @@ void MasterNode::TellWhatIsNotUsed() const {
 
 std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   const train_dynamics::ScenarioParams& scenario = scenario_.params;
+  std::vector<train_dynamics::Rank> external = train_dynamics::ExternalRanks(scenario.train);
+  std::unique_ptr<train_dynamics::Transport> built_in;
   if (options_.ranks == 0) {
-    return std::make_unique<train_dynamics::InProcessTransport>(scenario, scenario_.consist, 1);
+    built_in = std::make_unique<train_dynamics::InProcessTransport>(scenario, scenario_.consist, 1, true);
+  } else {
+    auto ranks = MakeRosTransport(train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks));
+    ranks_ = ranks.get();
+    last_count_.assign(ranks->ranks().size(), 0);
+    built_in = std::move(ranks);
   }
+  if (external.empty()) return built_in;
+  return std::make_unique<MixedTransport>(std::move(built_in), MakeRosTransport(std::move(external)));
+}
+
+std::unique_ptr<RosTransport> MasterNode::MakeRosTransport(std::vector<train_dynamics::Rank> ranks) const {
+  const train_dynamics::ScenarioParams& scenario = scenario_.params;
   RosTransportOptions transport;
   transport.start_timeout_s = options_.startup_timeout_s;
   transport.exchange_deadline_s = options_.exchange_timeout_s;
@@ -209,11 +223,7 @@ std::unique_ptr<train_dynamics::Transport> MasterNode::MakeTransport() {
   transport.snapshot_exchanges =
       std::lround(std::clamp(kSnapshotInterval / scenario.exchange_interval_s, 1.0, kMostExchanges));
   transport.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
-  auto ranks = std::make_unique<RosTransport>(
-      train_dynamics::SplitRanks(scenario_.consist.vehicles(), options_.ranks), run_id_, scenario, transport);
-  ranks_ = ranks.get();
-  last_count_.assign(ranks->ranks().size(), 0);
-  return ranks;
+  return std::make_unique<RosTransport>(std::move(ranks), run_id_, scenario, transport);
 }
 
 std::unique_ptr<LockstepDriver> MasterNode::MakeDriver() {
@@ -338,7 +348,7 @@ void MasterNode::GiveCommands(train_run::TrainRun& run) {
 void MasterNode::AskDriver(train_run::TrainRun& run) {
   const LockstepDriverOptions& options = driver_->options();
   train_brake_msgs::DriverView view;
-  train_results::Convert(run.master().View(options.sight_m, options.sees_couplers), view);
+  train_results::Convert(run.View(options.sight_m, options.sees_couplers), view);
   LockstepDriver::Commands commands = driver_->Ask(view);
   if (driver_->IsLost() && options.on_lost == OnLostDriver::kEmergency) {
     train_brake_msgs::DriverCommand command;

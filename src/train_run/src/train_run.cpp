@@ -42,7 +42,7 @@ void TrainRun::Go(const RunHooks& hooks, std::chrono::duration<double> patience)
     Begin();
     Loop(hooks);
     ending_ = !master_.Done();
-    if (ending_ && output_ != nullptr) LeaveCheckpoint(hooks, patience);
+    if (ending_ && output_ != nullptr && master_.GivesCheckpoints()) LeaveCheckpoint(hooks, patience);
   } catch (const train_dynamics::SimulationFault& e) {
     fault_ = e.what();
   } catch (const WriteError& e) {
@@ -72,7 +72,8 @@ void TrainRun::Loop(const RunHooks& hooks) {
 
 bool TrainRun::Exchange(const RunHooks& hooks, bool wanted) {
   hooks.begins();
-  const bool leaves_checkpoint = output_ != nullptr && output_->AskForCheckpoint(master_, wanted);
+  const bool leaves_checkpoint =
+      output_ != nullptr && master_.GivesCheckpoints() && output_->AskForCheckpoint(master_, wanted);
   master_.Exchange();
   if (leaves_checkpoint) Write([&] { output_->KeepCheckpoint(master_, summary_); });
   return leaves_checkpoint;

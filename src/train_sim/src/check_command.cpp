@@ -14,6 +14,7 @@
 #include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/exchange_stability.h"
+#include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/thread_team.h"
 #include "train_sim/run_command.h"
 #include "train_sim/run_prediction.h"
@@ -86,6 +87,8 @@ void PrintScenario(const LoadedScenario& scenario) {
   Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name,
        consist.vehicles(), 1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars,
        draw_bars);
+  for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(p.train))
+    Line("external", "{}, moved by the node {}", VehiclesText(rank), rank.name);
   Line("track", "{}", p.track.name);
   if (p.pressure_table.empty()) {
     Line("pressures", "{}, {} driver command(s)", p.brake->name, p.commands.size());
@@ -179,14 +182,36 @@ std::string Json(const LoadedScenario& scenario, const RunPrediction& run,
     mass_kg += scenario.consist.vehicle(i).TotalMass();
     length_m += scenario.consist.vehicle(i).length_m;
   }
+  nlohmann::ordered_json external = nlohmann::ordered_json::array(), connections = external;
+  for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(p.train)) {
+    const train_dynamics::VehicleParams& vehicle =
+        scenario.consist.vehicle(rank.first);  // all of a group are equal
+    external.push_back({{"node", rank.name},
+                        {"first_vehicle", rank.first + 1},
+                        {"vehicles", rank.count},
+                        {"group", scenario.consist.vehicle_type[rank.first]},
+                        {"mass_kg", vehicle.TotalMass()},
+                        {"length_m", vehicle.length_m},
+                        {"speed_mps", p.InitialSpeedOfGroup(scenario.consist.vehicle_type[rank.first])}});
+  }
+  for (const ConnectionParams& connection : scenario.consist.connection_types) {
+    const train_dynamics::ConnectionTangent tangent = std::visit(
+        [](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce); }, connection.Law());
+    connections.push_back({{"name", connection.name},
+                           {"stiffness_n_per_m", tangent.stiffness_n_per_m},
+                           {"damping_ns_per_m", tangent.damping_ns_per_m}});
+  }
   const nlohmann::ordered_json json = {{"version", TRAIN_BRAKE_VERSION},
                                        {"scenario", p.name},
                                        {"description", p.description},
                                        {"model", p.ModelNames()},
+                                       {"default_model", train_dynamics::ModelName(p.model)},
                                        {"train", p.train.name},
                                        {"vehicles", scenario.consist.vehicles()},
                                        {"mass_kg", mass_kg},
                                        {"length_m", length_m},
+                                       {"external", external},
+                                       {"connections", connections},
                                        {"track", p.track.name},
                                        {"duration_s", p.duration_s},
                                        {"dt_s", p.dt_s},
@@ -214,7 +239,9 @@ int CheckScenario(const CheckOptions& options) {
   const LoadedScenario scenario = train_dynamics::config::LoadScenario(options.scenario, overrides);
   const ScenarioParams& params = scenario.params;
   const int threads = Threads(options.threads, scenario);
-  const RunPrediction run = PredictRun(scenario, threads);
+  LoadedScenario built_in = scenario;  // external vehicles as ours would take them
+  built_in.params = params.WithBuiltInVehicles();
+  const RunPrediction run = PredictRun(built_in, threads);
 
   std::vector<std::string> warnings = scenario.warnings;
   WarnOfRun(options, run, warnings);

@@ -36,6 +36,7 @@ std::vector<std::string> Overrides(const RunOptions& options) {
 LoadedScenario Load(const RunOptions& options) {
   LoadedScenario scenario = train_dynamics::config::LoadScenario(options.scenario, Overrides(options));
   Print(scenario.warnings);
+  train_dynamics::InProcessTransport::RefuseExternal(scenario.params);
   return scenario;
 }
 

@@ -15,6 +15,7 @@
 #include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
+#include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/run_summary.h"
 #include "train_results/conversions.h"
 #include "train_results/plain_file.h"
@@ -249,6 +250,16 @@ std::optional<std::string> DigestInSummary(const fs::path& recording) {
 int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::optional<std::string> summarised = DigestInSummary(options.recording);
   LoadedScenario scenario = ScenarioOf(options, recorded);
+  if (const auto external = train_dynamics::ExternalRanks(scenario.params.train); !external.empty()) {
+    throw train_results::UnreadableBag(fmt::format(
+        "{}{} external, and only the node {} can move them again: run {} with it once more, and compare "
+        "state_digest in summary.json",
+        VehiclesText(external.front()),
+        external.size() > 1          ? " and others are"
+        : external.front().count > 1 ? " are"
+                                     : " is",
+        external.front().name, recorded.LiveCommands().empty() ? "config.yaml" : "replay.yaml"));
+  }
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
   const ScenarioParams& params = scenario.params;
   train_dynamics::InProcessTransport vehicles(params, scenario.consist, Threads(options.threads, scenario));

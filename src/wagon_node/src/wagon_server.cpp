@@ -185,6 +185,7 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
     CopyReply(run->state, response);
     run->Fill(true, response.record);
     response.threads = static_cast<std::uint32_t>(run->vehicles.threads());
+    response.gives_snapshots = true;
     response.ok = true;
     response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) +
                        ", scenario " + run->scenario.name + ", run " + Text(run->id);

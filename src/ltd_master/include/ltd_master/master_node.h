@@ -78,6 +78,7 @@ class MasterNode {
  private:
   void TellWhatIsNotUsed() const;
   std::unique_ptr<train_dynamics::Transport> MakeTransport();
+  std::unique_ptr<RosTransport> MakeRosTransport(std::vector<train_dynamics::Rank> ranks) const;
   std::unique_ptr<LockstepDriver> MakeDriver();
   /// Paced by control_, with diagnostics each second. @throws WaitInterrupted, RankFailure, DriverFailure
   void Go(train_run::TrainRun& run);

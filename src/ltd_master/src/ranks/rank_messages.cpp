@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ltd_master/ranks/late_watch.h"
 #include "strict_config/writer.h"
@@ -23,6 +24,21 @@ using train_dynamics::VehicleModel;
 template <class Values>
 bool AllFinite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// The snapshot of external vehicles, of a format of their own, as the row of the first of them.
+StateRow RowOf(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+/// @throws SnapshotError if the row is not one of bytes
+std::vector<std::uint8_t> BytesOf(const StateRow& row) {
+  std::vector<std::uint8_t> bytes;
+  for (const double number : row) {
+    const auto byte = static_cast<std::uint8_t>(std::clamp(number, 0.0, 255.0));
+    if (static_cast<double>(byte) != number)
+      throw train_dynamics::SnapshotError("is not one of external vehicles");
+    bytes.push_back(byte);
+  }
+  if (bytes.empty()) throw train_dynamics::SnapshotError("has nothing of external vehicles");
+  return bytes;
 }
 
 /// Copies arrays of a rank's reply to their places in those of the whole train.
@@ -76,6 +92,35 @@ class Unpacker {
     }
   }
 
+  /// Of external vehicles: what their node leaves out follows from the coupler heads, or is NaN; the digest covers the heads and
+  /// what the node adds of its own.
+  /// @param start_m  [vehicle of the train] centre along the track
+  void ExternalRecord(const train_brake_msgs::RankRecord& record, const std::vector<double>& start_m,
+                      ExchangeReply& reply) const {
+    const auto never = [](std::size_t) { return false; };
+    train_dynamics::ForEachRecordField(
+        [&](const RecordInfo& field, const auto& from, auto& to) {
+          if (!from.empty()) return Copy(field, from, never, to);
+          const auto begin = to.begin() + static_cast<std::ptrdiff_t>(rank_.first) * field.numbers;
+          std::fill_n(begin, Count() * field.numbers, std::numeric_limits<double>::quiet_NaN());
+        },
+        record, reply);
+    if (!record.state_digest.empty()) CheckSize("state_digest", record.state_digest.size(), Count());
+    for (std::size_t i = 0; i < Count(); ++i) {
+      const std::size_t at = rank_.first + i;
+      if (record.position_m.empty()) reply.position_m[at] = start_m[at] + reply.head_displacement_m[at];
+      if (record.speed_mps.empty()) reply.speed_mps[at] = reply.head_velocity_mps[at];
+      if (!std::isfinite(reply.position_m[at]) || !std::isfinite(reply.speed_mps[at]))
+        Fail(fmt::format("replied position_m = {}, speed_mps = {} for vehicle {}", reply.position_m[at],
+                         reply.speed_mps[at], at + 1));
+      train_dynamics::Digest digest;
+      digest.Add(reply.head_displacement_m[at]);
+      digest.Add(reply.head_velocity_mps[at]);
+      if (!record.state_digest.empty()) digest.Add(record.state_digest[i]);
+      reply.state_digest[at] = digest.value();
+    }
+  }
+
   /// @param numbers  of slides, one behind the other
   void Slides(const std::vector<double>& numbers, ExchangeReply& reply) const {
     using train_dynamics::kSlideNumbers;
@@ -102,9 +147,15 @@ class Unpacker {
     }
   }
 
-  /// @param last  the train's last rank
-  void Snapshot(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes, const Rank& last,
+  /// @param vehicles  of the train
+  void Snapshot(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes, std::size_t vehicles,
                 ExchangeReply& reply) const {
+    reply.snapshot.resize(vehicles);
+    if (rank_.is_external) {
+      if (bytes.empty()) Fail("replied an empty snapshot");
+      reply.snapshot[rank_.first] = RowOf(bytes);
+      return;
+    }
     train_dynamics::BlockSnapshot part;
     try {
       part = train_dynamics::DecodeBlockSnapshot(bytes);
@@ -118,7 +169,6 @@ class Unpacker {
     for (const StateRow& state : part.states) {
       if (!AllFinite(state)) Fail("replied a snapshot that is not finite");
     }
-    reply.snapshot.resize(last.first + last.count);
     std::move(part.states.begin(), part.states.end(), reply.snapshot.begin() + rank_.first);
   }
 
@@ -165,7 +215,13 @@ std::string ExchangeText(std::uint64_t exchange) { return fmt::format("exchange 
 
 RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
                            const train_dynamics::ScenarioParams& scenario)
-    : configure(ranks.size()), step(ranks.size()), ranks_(ranks), models_(scenario.VehicleModels()) {
+    : configure(ranks.size()),
+      step(ranks.size()),
+      ranks_(ranks),
+      models_(scenario.VehicleModels()),
+      gives_snapshots_(ranks.size(), true) {
+  const train_dynamics::Consist consist(scenario.train);
+  for (const double centre_m : consist.centre_m) start_m_.push_back(scenario.start_position_m + centre_m);
   const std::string scenario_text = strict_config::Write(scenario);
   const std::uint64_t digest = train_dynamics::TextDigest(scenario_text);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -177,16 +233,27 @@ RankMessages::RankMessages(const std::vector<Rank>& ranks, std::uint64_t run_id,
     request.scenario = scenario_text;
     request.scenario_digest = digest;
     step[i].request.run_id = run_id;
+    if (!ranks[i].is_external) continue;
+    for (int vehicle = ranks[i].first; vehicle < ranks[i].first + ranks[i].count; ++vehicle) {
+      request.mass_kg.push_back(consist.vehicle(vehicle).TotalMass());
+      request.length_m.push_back(consist.vehicle(vehicle).length_m);
+      request.position_m.push_back(start_m_[vehicle]);
+      request.speed_mps.push_back(scenario.InitialSpeedOfGroup(consist.vehicle_type[vehicle]));
+    }
   }
 }
 
 void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<StateRow>& snapshot) {
-  if (!snapshot.empty()) train_dynamics::CheckRows(snapshot, ranks_.back().first + ranks_.back().count);
+  if (!snapshot.empty()) train_dynamics::CheckRows(snapshot, static_cast<int>(models_.size()));
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     train_brake_msgs::ConfigureRequest& request = configure[i].request;
     request.exchange = exchange;
     request.snapshot.clear();
     if (snapshot.empty()) continue;
+    if (ranks_[i].is_external) {
+      request.snapshot = BytesOf(snapshot[ranks_[i].first]);
+      continue;
+    }
     train_dynamics::BlockSnapshot part;
     part.exchange = exchange;
     part.first = static_cast<std::uint64_t>(ranks_[i].first);
@@ -196,15 +263,20 @@ void RankMessages::BeginAt(std::uint64_t exchange, const std::vector<StateRow>& 
   }
 }
 
-void RankMessages::Unpack(ExchangeReply& reply) const {
+void RankMessages::Unpack(ExchangeReply& reply) {
   const std::string when = kConfiguration;
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const train_brake_msgs::ConfigureResponse& response = configure[i].response;
     const Unpacker unpacker(ranks_[i], when);
     if (!response.ok) unpacker.Fail(response.message);
     unpacker.Reply(response, reply);
-    unpacker.Record(response.record, models_, false, reply);
-    unpacker.Energies(response.record, reply);
+    gives_snapshots_[i] = response.gives_snapshots;
+    if (ranks_[i].is_external) {
+      unpacker.ExternalRecord(response.record, start_m_, reply);
+    } else {
+      unpacker.Record(response.record, models_, false, reply);
+      unpacker.Energies(response.record, reply);
+    }
   }
 }
 
@@ -217,15 +289,15 @@ void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs
   part.dt_s = whole.dt_s;
   part.steps = static_cast<std::uint32_t>(whole.steps);
   part.record = whole.record;
-  part.ledger = whole.ledger;
-  part.snapshot = whole.snapshot;
+  part.ledger = whole.ledger && !ranks_[rank].is_external;
+  part.snapshot = whole.snapshot && gives_snapshots_[rank];
   train_dynamics::CopyLoads(whole, ranks_[rank].first, ranks_[rank].count, part);
 }
 
 void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) const {
   const std::string when = ExchangeText(whole.exchange);
   reply.fault = {};
-  if (whole.record) reply.slides.clear();
+  if (whole.record && !ranks_.front().is_external) reply.slides.clear();
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const train_brake_msgs::StepResponse& response = step[i].response;
     const Unpacker unpacker(ranks_[i], when);
@@ -239,9 +311,14 @@ void RankMessages::Unpack(const ExchangeRequest& whole, ExchangeReply& reply) co
       return;
     }
     unpacker.Reply(response, reply);
-    if (whole.record) unpacker.Record(response.record, models_, true, reply);
-    if (whole.ledger) unpacker.Energies(response.record, reply);
-    if (whole.snapshot) unpacker.Snapshot(whole.exchange + 1, response.snapshot, ranks_.back(), reply);
+    if (whole.record && ranks_[i].is_external) {
+      unpacker.ExternalRecord(response.record, start_m_, reply);
+    } else if (whole.record) {
+      unpacker.Record(response.record, models_, true, reply);
+    }
+    if (whole.ledger && !ranks_[i].is_external) unpacker.Energies(response.record, reply);
+    if (whole.snapshot && gives_snapshots_[i])
+      unpacker.Snapshot(whole.exchange + 1, response.snapshot, models_.size(), reply);
   }
 }
 

@@ -64,6 +64,20 @@ void RosTransport::Resume(std::uint64_t exchange, const std::vector<train_dynami
   const CallOutcome outcome = caller_->Call(messages_->configure, watch);
   Recover(outcome.lost, watch, [this](int rank) { Reconfigure(rank); });
   messages_->Unpack(reply);
+  for (int rank = 0; options_.recover && rank < static_cast<int>(ranks_.size()); ++rank) {
+    if (messages_->GivesSnapshots(rank)) continue;
+    ROS_WARN(
+        "%s (%s) gives no snapshots: it cannot be brought back if it is lost, and the run leaves no "
+        "checkpoints",
+        ranks_[rank].name.c_str(), VehiclesText(ranks_[rank]).c_str());
+  }
+}
+
+bool RosTransport::GivesSnapshots() const {
+  bool all = true;
+  for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank)
+    all = all && messages_->GivesSnapshots(rank);
+  return all;
 }
 
 void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request,
@@ -99,7 +113,9 @@ void RosTransport::KeepForRecovery() {
 void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
                            const std::function<void(int rank)>& catch_up) {
   if (lost.empty()) return;
-  if (!options_.recover) watch.GiveUp(lost);
+  const bool can_recover = std::all_of(
+      lost.begin(), lost.end(), [this](const LostRank& one) { return messages_->GivesSnapshots(one.rank); });
+  if (!options_.recover || !can_recover) watch.GiveUp(lost);
   for (const LostRank& one : lost) {
     const RankFailure what(ranks_[one.rank], watch.when(), one.why);
     ROS_WARN("%s. The train waits until a node of that name is there again.", what.what());

@@ -183,9 +183,10 @@ def run(words):
     if told is None:
         return 2
     arguments.setdefault("vehicles", told["vehicles"])
-    # The launch file takes 2d, and one wagon node per core, where it is told nothing: an LTD train needs none.
-    if told["model"] in ("ltd", "ltd-no-inertia"):
-        arguments.setdefault("model", told["model"])
+    # The launch file takes 2d, and one wagon node per core, where it is told nothing: a train without 2D vehicles needs none.
+    if "model" not in arguments:
+        arguments["model"] = told["default_model"]
+        arguments.setdefault("on_nodes", str("2d" in told["model"].split(", ")).lower())
     if scenario:
         arguments["scenario"] = os.path.abspath(scenario)
     if out:

@@ -23,6 +23,7 @@ EnergyLedger MakeEnergyLedger(double time_s, const std::vector<VehicleEnergy>& v
   ledger.potential_j += connections.potential;
   ledger.dissipated_j.emplace_back("draft_gears", connections.draft_gears);
   ledger.dissipated_j.emplace_back("draw_bars", connections.draw_bars);
+  if (connections.external) ledger.dissipated_j.emplace_back("external_vehicles", *connections.external);
   return ledger;
 }
 

@@ -1,6 +1,20 @@
 #include "train_dynamics/train/in_process_train.h"
 
+#include <stdexcept>
+
+#include "train_dynamics/train/ranks.h"
+
 namespace train_dynamics {
+
+void InProcessTransport::RefuseExternal(const ScenarioParams& scenario) {
+  const std::vector<Rank> external = ExternalRanks(scenario.train);
+  if (external.empty()) return;
+  const bool is_one = external.size() == 1 && external.front().count == 1;
+  throw std::invalid_argument(VehiclesText(external.front()) + (external.size() > 1 ? " and others" : "") +
+                              (is_one ? " is" : " are") + " external, moved by the node " +
+                              external.front().name +
+                              ": run such a train as a ROS graph (rosrun train_brake run), with its node");
+}
 
 void InProcessTransport::Start(ExchangeReply& reply) { vehicles_.Report(0, true, reply); }
 

@@ -6,8 +6,10 @@
 
 namespace train_dynamics {
 
-InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s)
+InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s,
+                             const std::vector<int>& external)
     : prediction_s_(prediction_s) {
+  for (const int vehicle : external) external_.push_back({vehicle});
   for (const ConnectionParams& type : consist.connection_types) sets_.emplace_back(type);
   for (const int type : consist.connection_type) {
     Set& set = sets_[type];
@@ -69,6 +71,7 @@ void InTrainForces::Set::Part(double time_s) {
 }
 
 void InTrainForces::Begin(const std::vector<double>& head_displacement_m) {
+  for (External& external : external_) external.displacement_m = head_displacement_m[external.vehicle];
   for (Set& set : sets_) {
     for (std::size_t i = 0; i < set.place.size(); ++i) {
       const int c = set.place[i];
@@ -97,6 +100,12 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
 }
 
 void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m) {
+  for (External& external : external_) {
+    const int i = external.vehicle;
+    const double pull_n = (i > 0 ? ForceOf(i - 1) : 0.0) - (i < connections() ? ForceOf(i) : 0.0);
+    external.work_j += pull_n * (head_displacement_m[i] - external.displacement_m);
+    external.displacement_m = head_displacement_m[i];
+  }
   for (Set& set : sets_) {
     const std::size_t count = set.place.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -166,6 +175,10 @@ void InTrainForces::ForEachMemory(Self& self, Function& function) {
     }
     ForEachField(set, place.at, function);
   }
+  for (auto& external : self.external_) {
+    function(external.displacement_m);
+    function(external.work_j);
+  }
 }
 
 std::vector<double> InTrainForces::Memory() const {
@@ -182,6 +195,8 @@ void InTrainForces::SetMemory(const std::vector<double>& memory) {
 
 ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
+  for (const External& external : external_)
+    energy.external = energy.external.value_or(0.0) + external.work_j;
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
     const bool loose = set.parted_s[place.at] >= 0.0 && set.extension_m[place.at] > 0.0;

@@ -9,9 +9,19 @@ std::vector<Rank> SplitRanks(int vehicles, int ranks) {
   std::vector<Rank> split;
   for (long r = 0; r < size; ++r) {
     const int first = static_cast<int>(n * r / size), next = static_cast<int>(n * (r + 1) / size);
-    split.push_back({VehicleName(first, vehicles), first, next - first});
+    split.push_back({VehicleName(first, vehicles), first, next - first, false});
   }
   return split;
+}
+
+std::vector<Rank> ExternalRanks(const TrainParams& train) {
+  std::vector<Rank> ranks;
+  int first = 0;
+  for (const ConsistGroupParams& group : train.consist) {
+    if (!group.external.empty()) ranks.push_back({group.external, first, group.count, true});
+    first += group.count;
+  }
+  return ranks;
 }
 
 std::string VehicleName(int vehicle, int vehicles) {

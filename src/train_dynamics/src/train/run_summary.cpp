@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <sstream>
 
+#include "train_dynamics/train/ranks.h"
+
 namespace train_dynamics {
 namespace {
 
@@ -38,6 +40,21 @@ std::string Quoted(const std::string& text) {
     }
   }
   return quoted + "\"";
+}
+
+/// Of a train with external vehicles: who moves which, and what this program can tell of them.
+std::string External(const ScenarioParams& scenario) {
+  std::string nodes;
+  for (const Rank& rank : ExternalRanks(scenario.train)) {
+    nodes += std::string(nodes.empty() ? "" : ", ") + "{\"node\": " + Quoted(rank.name) +
+             ", \"first_vehicle\": " + std::to_string(rank.first + 1) +
+             ", \"vehicles\": " + std::to_string(rank.count) + "}";
+  }
+  if (nodes.empty()) return "";
+  return ",\n  \"external\": [" + nodes +
+         "],\n  \"external_covered\": {\"state_digest\": \"motion of the coupler heads at records, and the "
+         "digest that a node "
+         "gives\", \"energy\": \"work of the couplers on them\"}";
 }
 
 /// The largest force over all connections as a JSON object; null for a train without connections.
@@ -228,7 +245,7 @@ std::string RunSummary::Json(const TrainMaster& master, double wall_s, const std
   std::ostringstream json;
   json << "{\n  \"version\": \"" << TRAIN_BRAKE_VERSION << "\",\n  \"scenario\": " << Quoted(scenario_.name)
        << ",\n  \"model\": \"" << scenario_.ModelNames() << "\",\n  \"vehicles\": " << vehicles_
-       << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
+       << External(scenario_) << ",\n  \"dt_s\": " << Number(scenario_.dt_s)
        << ",\n  \"exchange_interval_s\": " << Number(scenario_.exchange_interval_s)
        << ",\n  \"simulated_s\": " << Number(simulated_s)
        << ",\n  \"resumed_at_s\": " << (master.start_s() > 0.0 ? Number(master.start_s()) : "null")

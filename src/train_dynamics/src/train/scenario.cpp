@@ -203,6 +203,16 @@ std::string ScenarioParams::ModelNames() const {
   return names;
 }
 
+ScenarioParams ScenarioParams::WithBuiltInVehicles() const {
+  ScenarioParams built_in = *this;
+  for (ConsistGroupParams& group : built_in.train.consist) {
+    if (group.external.empty()) continue;
+    group.model = VehicleModel::kLtd;
+    group.external.clear();
+  }
+  return built_in;
+}
+
 std::vector<int> ScenarioParams::DetailedVehicles() const {
   std::vector<int> detailed;
   if (!Uses(VehicleModel::kTwoD)) return detailed;
@@ -224,6 +234,7 @@ bool ScenarioParams::Multiple(double whole, double part) {
 
 std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
+  JudgeNodes(broken);
   JudgeTimes(broken);
   JudgeBrake(broken);
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
@@ -255,6 +266,19 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
       broken.push_back(rule);
   }
   return broken;
+}
+
+void ScenarioParams::JudgeNodes(std::vector<BrokenRule>& broken) const {
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const std::string& node = train.consist[i].external;
+    for (std::size_t other = 0; !node.empty() && other < i; ++other) {
+      if (train.consist[other].external != node) continue;
+      broken.push_back({"train.consist" + Index(i) + ".external",
+                        "must differ from that of consist" + Index(other) + ": a node moves one group",
+                        {"train"}});
+      break;
+    }
+  }
 }
 
 void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {

@@ -5,7 +5,20 @@
 #include <stdexcept>
 #include <utility>
 
+#include "train_dynamics/train/ranks.h"
+
 namespace train_dynamics {
+namespace {
+
+std::vector<int> ExternalVehicles(const ScenarioParams& scenario) {
+  std::vector<int> vehicles;
+  for (const Rank& rank : ExternalRanks(scenario.train)) {
+    for (int i = 0; i < rank.count; ++i) vehicles.push_back(rank.first + i);
+  }
+  return vehicles;
+}
+
+}  // namespace
 
 TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
                          BrakeSystem brake)
@@ -14,7 +27,8 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       transport_(transport),
       brake_(std::move(brake)),
       forces_(consist, scenario.initial_slack,
-              scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0),
+              scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0,
+              ExternalVehicles(scenario)),
       locomotives_(consist, TimedLocomotiveCommands(scenario.commands)),
       curves_(scenario.track, consist, scenario.start_position_m),
       reply_(consist.vehicles(), scenario.DetailedVehicles()),

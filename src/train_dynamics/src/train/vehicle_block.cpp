@@ -340,11 +340,12 @@ class BatchedBlock : public VehicleBlock {
       : track_(scenario.track), first_(first) {
     for (int i = first; i < first + count;) {
       const int group = consist.vehicle_type[i], begin = i;
+      const VehicleModel model = scenario.ModelOfGroup(group);
       std::vector<double> centre_m;
       for (; i < first + count && consist.vehicle_type[i] == group; ++i) {
         centre_m.push_back(scenario.start_position_m + consist.centre_m[i]);
       }
-      const VehicleModel model = scenario.ModelOfGroup(group);
+      if (!scenario.train.consist[group].external.empty()) continue;
       runs_.push_back({begin, model,
                        MakeBatch(model, consist.vehicle_types[group], scenario,
                                  scenario.InitialSpeedOfGroup(group), centre_m)});
@@ -397,9 +398,7 @@ class BatchedBlock : public VehicleBlock {
     for (const Run& run : runs_) {
       std::visit(
           [&](const auto& batch) {
-            for (int i = 0; i < batch.size(); ++i, ++rows) {
-              batch.Save(i, *rows);
-            }
+            for (int i = 0; i < batch.size(); ++i) batch.Save(i, rows[run.begin - first_ + i]);
           },
           run.batch);
     }
@@ -409,9 +408,10 @@ class BatchedBlock : public VehicleBlock {
     for (Run& run : runs_) {
       std::visit(
           [&](auto& batch) {
-            for (int i = 0; i < batch.size(); ++i, ++rows) {
-              if (batch.Restore(i, *rows) == rows->size() && !rows->empty()) continue;
-              throw SnapshotError("has " + std::to_string(rows->size()) + " numbers of vehicle " +
+            for (int i = 0; i < batch.size(); ++i) {
+              const StateRow& row = rows[run.begin - first_ + i];
+              if (batch.Restore(i, row) == row.size() && !row.empty()) continue;
+              throw SnapshotError("has " + std::to_string(row.size()) + " numbers of vehicle " +
                                   std::to_string(run.begin + i + 1) + ", but one of the " +
                                   ModelName(run.model) + " model has, with its equipment, others");
             }

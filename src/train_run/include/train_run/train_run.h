@@ -68,6 +68,11 @@ class TrainRun {
   /// See TrainMaster::Command; between two exchanges.
   void Command(const train_dynamics::DriverCommand& command) { master_.Command(command); }
 
+  /// See TrainMaster::View; between two exchanges.
+  const train_dynamics::DriverView& View(double ahead_m, bool is_shown_couplers) {
+    return master_.View(ahead_m, is_shown_couplers);
+  }
+
   const train_dynamics::TrainMaster& master() const { return master_; }
   const train_dynamics::RunSummary& summary() const { return summary_; }
   /// See RunSummary::SetTwin.

@@ -30,7 +30,9 @@ class RankMessages {
   /// Where `configure` begins. @param snapshot  [vehicle]; empty: time 0
   /// @throws SnapshotError if it is not one of so many vehicles
   void BeginAt(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot);
-  void Unpack(train_dynamics::ExchangeReply& reply) const;  ///< the replies of `configure`
+  void Unpack(train_dynamics::ExchangeReply& reply);  ///< the replies of `configure`
+  /// Whether a rank answers with snapshots; known once its reply to `configure` has been unpacked.
+  bool GivesSnapshots(int rank) const { return gives_snapshots_[rank]; }
 
   void Pack(const train_dynamics::ExchangeRequest& request);
   /// One rank's part of a request.
@@ -41,6 +43,8 @@ class RankMessages {
  private:
   std::vector<train_dynamics::Rank> ranks_;
   std::vector<train_dynamics::VehicleModel> models_;  ///< [vehicle]
+  std::vector<double> start_m_;                       ///< [vehicle] centre along the track
+  std::vector<bool> gives_snapshots_;                 ///< [rank]
 };
 
 }  // namespace ltd_master

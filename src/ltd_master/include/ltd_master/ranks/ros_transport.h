@@ -52,6 +52,8 @@ struct ExchangeTiming {
 ///
 /// A node that refuses one of these, or is lost in it, is not taken, and the next one is waited for.
 ///
+/// A rank that gives no snapshots cannot be brought back: the run ends with it.
+///
 /// Both throw RankFailure (no recovery wanted, or in vain; a refusal; a reply that makes no sense) and
 /// WaitInterrupted; afterwards the transport is of no more use.
 ///
@@ -69,6 +71,8 @@ class RosTransport : public train_dynamics::Transport {
               train_dynamics::ExchangeReply& reply) override;
   void Exchange(const train_dynamics::ExchangeRequest& request,
                 train_dynamics::ExchangeReply& reply) override;
+
+  bool GivesSnapshots() const override;
 
   const ExchangeTiming& timing() const { return timing_; }
   unsigned recoveries() const { return recoveries_; }                        ///< of lost ranks, so far

@@ -26,6 +26,7 @@ struct ConsistGroupParams {
   std::optional<VehicleModel> model = std::nullopt;
   std::optional<double> initial_speed_kmh = std::nullopt;
   double command_delay_s = 0.0;
+  std::string external;
   bool locomotive = false;
 
   template <class Visitor>
@@ -37,6 +38,10 @@ struct ConsistGroupParams {
             "needs a vehicle with load: what it carries when it is full", {"vehicle"});
     v.Choice("model", model, kVehicleModels,
              "model of the group's vehicles; not given: that of the scenario");
+    v.Text("external", external,
+           "node whose services move the vehicles, in the train's namespace; empty: this program moves them");
+    v.Check(external.empty() || !model, "model",
+            "must not be given for external vehicles: their node is their model", {"external"});
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false},
              "speed of the group at time 0; not given: that of the scenario");
     v.Integer("count", count, Range{1, 100000, false, false}, "number of vehicles");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "train_dynamics/coupler/connection_kernels.h"
@@ -22,9 +23,10 @@ struct Parting {
 
 /// Work that the connections have taken up [J].
 struct ConnectionEnergy {
-  double potential = 0.0;    ///< elastic energy stored now
-  double draft_gears = 0.0;  ///< dissipated so far
-  double draw_bars = 0.0;    ///< dissipated so far
+  double potential = 0.0;          ///< elastic energy stored now
+  double draft_gears = 0.0;        ///< dissipated so far
+  double draw_bars = 0.0;          ///< dissipated so far
+  std::optional<double> external;  ///< work done on external vehicles so far; none: there are none
 };
 
 /// The forces between the vehicles of a train.
@@ -41,7 +43,9 @@ class InTrainForces {
  public:
   /// @param prediction_s  how far ahead of the exchange the forces are evaluated: H/2, or 0 for the Newmark
   /// integrator
-  InTrainForces(const Consist& consist, SlackState slack, double prediction_s);
+  /// @param external  indices of the external vehicles, ascending: the work done on them is booked
+  InTrainForces(const Consist& consist, SlackState slack, double prediction_s,
+                const std::vector<int>& external = {});
 
   /// Takes the heads' displacements at time 0, where the connections stand in their start state of slack.
   void Begin(const std::vector<double>& head_displacement_m);
@@ -104,7 +108,17 @@ class InTrainForces {
   template <class Self, class Function>
   static void ForEachMemory(Self& self, Function& function);
 
+  /// A vehicle that another program moves, and the work of its couplers on it.
+  struct External {
+    int vehicle;
+    double displacement_m = 0.0, work_j = 0.0;
+  };
+  double ForceOf(int connection) const {
+    return sets_[places_[connection].set].force_n[places_[connection].at];
+  }
+
   double prediction_s_;
+  std::vector<External> external_;
   std::vector<Set> sets_;
   std::vector<Place> places_;  ///< [connection]
 };

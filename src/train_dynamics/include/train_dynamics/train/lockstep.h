@@ -86,6 +86,8 @@ class Transport {
   /// @throws SnapshotError if the snapshot does not fit
   virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot,
                       ExchangeReply& reply) = 0;
+  /// Whether snapshots can be asked for; known once it has started.
+  virtual bool GivesSnapshots() const { return true; }
   /// One exchange with every vehicle; returns when all have replied.
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };

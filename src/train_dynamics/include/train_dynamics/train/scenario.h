@@ -95,11 +95,17 @@ struct ScenarioParams {
   long Exchanges() const;
   int ExchangesPerRecord() const;
   int RecordsPerLedger() const;
-  VehicleModel ModelOfGroup(std::size_t group) const { return train.consist[group].model.value_or(model); }
+  /// External vehicles count as LTD: one mass, without wheels.
+  VehicleModel ModelOfGroup(std::size_t group) const {
+    const ConsistGroupParams& of = train.consist[group];
+    return of.external.empty() ? of.model.value_or(model) : VehicleModel::kLtd;
+  }
   bool Uses(VehicleModel model) const;              ///< for any group
   std::vector<VehicleModel> VehicleModels() const;  ///< [vehicle]
   /// The names of the models of the train's groups, each once: "2d", or "2d, ltd".
   std::string ModelNames() const;
+  /// The same with vehicles of the ltd model in place of external ones.
+  ScenarioParams WithBuiltInVehicles() const;
   /// Indices of the vehicles recorded in full detail, ascending, each once: those of the 2D model.
   std::vector<int> DetailedVehicles() const;
   /// Of the vehicles of a group [m/s].
@@ -112,6 +118,7 @@ struct ScenarioParams {
  private:
   static bool Multiple(double whole, double part);
   std::vector<BrokenRule> BrokenRules() const;
+  void JudgeNodes(std::vector<BrokenRule>& broken) const;
   void JudgeTimes(std::vector<BrokenRule>& broken) const;
   void JudgeBrake(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;

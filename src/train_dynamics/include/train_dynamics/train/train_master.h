@@ -57,6 +57,8 @@ class TrainMaster {
   /// Brings the vehicles and the books to the state of a checkpoint instead. Its record has been shown.
   /// @throws SnapshotError if the checkpoint is not one of such a train
   void Resume(const TrainCheckpoint& checkpoint);
+  /// Whether checkpoints can be asked for; known once it has started.
+  bool GivesCheckpoints() const { return transport_.GivesSnapshots(); }
   /// Lets the next exchange leave a checkpoint. May be called before one that ends with a record.
   void AskForCheckpoint();
   /// The checkpoint that the last exchange has left, without what only its caller knows: scenario and summary.

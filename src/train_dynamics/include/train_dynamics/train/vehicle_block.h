@@ -39,7 +39,8 @@ class VehicleBlock {
 /// yet: of those, kSharedSlidesPerWheelset of each wheelset.
 int MostStateNumbers();
 
-/// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model.
+/// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model. External ones
+/// are left out: their places in replies and rows stay as they are.
 std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
                                                int first, int count);
 
