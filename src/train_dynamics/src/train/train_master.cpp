@@ -156,13 +156,14 @@ const DriverView& TrainMaster::View(double ahead_m, bool is_shown_couplers) {
     view.dynamic_brake_notch = locomotives_.command(0).dynamic_brake_notch;
   }
   SetBrakeHandle(scenario_.commands, schedule_.Given(), time_s(), scenario_.exchange_interval_s, view);
-  brake_.PressuresAt(time_s(), pressure_pa_);
+  BrakeSystem brake(brake_);  // of a copy: whether somebody looks changes nothing
+  brake.PressuresAt(time_s(), pressure_pa_);
   view.cylinder_kpa = 1e-3 * pressure_pa_.front();
   view.mean_cylinder_kpa = 0.0;
   for (const double pressure_pa : pressure_pa_)
     view.mean_cylinder_kpa += 1e-3 * pressure_pa / static_cast<double>(pressure_pa_.size());
   view.brake_pipe_kpa = std::numeric_limits<double>::quiet_NaN();
-  if (const PneumaticBrake* machine = brake_.pneumatic())
+  if (const PneumaticBrake* machine = brake.pneumatic())
     view.brake_pipe_kpa = 1e-3 * machine->PipePressure(0);
   view.coupler_force_n.clear();
   if (is_shown_couplers) {
