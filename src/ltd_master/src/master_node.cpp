@@ -157,6 +157,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   scenario_publisher_ = node.advertise<std_msgs::String>(train_results::kScenarioTopic, 1, true);
   scenario_publisher_.publish(train_results::ScenarioMessage(scenario_.params));
   given_publisher_ = node.advertise<train_brake_msgs::GivenCommand>(train_results::kGivenTopic, kQueue, true);
+  view_publisher_ = node.advertise<train_brake_msgs::DriverView>("live/driver_view", 1, true);
   command_subscriber_ = node.subscribe("driver/command", kQueue, &MasterNode::OnCommand, this);
   services_.push_back(node.advertiseService("driver/give", &MasterNode::OnGive, this));
   diagnostics_publisher_ = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
@@ -323,6 +324,7 @@ void MasterNode::Go(train_run::TrainRun& run) {
     control_.Completed(master.time_s());
   };
   hooks.turned = [&] {
+    ShowView(run);
     const double elapsed_s = std::chrono::duration<double>(Clock::now() - last_diagnostics).count();
     if (elapsed_s < 1.0) return;
     real_time_factor_ = (master.time_s() - simulated_then_s) / elapsed_s;
@@ -345,10 +347,28 @@ void MasterNode::GiveCommands(train_run::TrainRun& run) {
   if (driver_ != nullptr && driver_->IsDue(exchange)) AskDriver(run);
 }
 
+train_brake_msgs::DriverView MasterNode::ViewOf(train_run::TrainRun& run, bool sees_couplers) const {
+  train_brake_msgs::DriverView view;
+  train_results::Convert(run.View(options_.driver.sight_m, sees_couplers), view);
+  const train_dynamics::Locomotives& locomotives = run.master().locomotives();
+  if (locomotives.empty()) return view;
+  const train_dynamics::TractionParams& lead = locomotives.traction(0);
+  view.throttle_notches = lead.tractive_effort.Notches();
+  view.dynamic_brake_notches = lead.dynamic_brake ? lead.dynamic_brake->Notches() : 0;
+  return view;
+}
+
+void MasterNode::ShowView(train_run::TrainRun& run) {
+  constexpr std::chrono::milliseconds kPeriod(50);
+  const Clock::time_point now = Clock::now();
+  if (now < next_view_) return;
+  next_view_ = now + kPeriod;
+  if (view_publisher_.getNumSubscribers() > 0) view_publisher_.publish(ViewOf(run, false));
+}
+
 void MasterNode::AskDriver(train_run::TrainRun& run) {
   const LockstepDriverOptions& options = driver_->options();
-  train_brake_msgs::DriverView view;
-  train_results::Convert(run.View(options.sight_m, options.sees_couplers), view);
+  const train_brake_msgs::DriverView view = ViewOf(run, options.sees_couplers);
   LockstepDriver::Commands commands = driver_->Ask(view);
   if (driver_->IsLost() && options.on_lost == OnLostDriver::kEmergency) {
     train_brake_msgs::DriverCommand command;

@@ -1,6 +1,7 @@
 #include "train_brake_rviz/run_client.h"
 
 #include <std_srvs/Trigger.h>
+#include <train_brake_msgs/GiveCommand.h>
 #include <train_brake_msgs/SelectView.h>
 #include <train_brake_msgs/SetRealTimeFactor.h>
 #include <train_brake_msgs/StepExchanges.h>
@@ -36,6 +37,12 @@ Answer RunClient::SetRealTimeFactor(double factor) {
   train_brake_msgs::SetRealTimeFactor service;
   service.request.real_time_factor = factor;
   return Call("master/set_real_time_factor", service);
+}
+
+Answer RunClient::Give(const train_brake_msgs::DriverCommand& command) {
+  train_brake_msgs::GiveCommand service;
+  service.request.command = command;
+  return Call("driver/give", service);
 }
 
 Answer RunClient::Select(const std::string& quantity, int vehicle) {

@@ -85,6 +85,9 @@ class MasterNode {
   /// What drivers do at the start of the next exchange: live commands first, then the driver in lockstep.
   void GiveCommands(train_run::TrainRun& run);
   void AskDriver(train_run::TrainRun& run);
+  train_brake_msgs::DriverView ViewOf(train_run::TrainRun& run, bool sees_couplers) const;
+  /// For cabs: at most 20 times per second of wall time, and only where somebody listens.
+  void ShowView(train_run::TrainRun& run);
   void Publish(const train_dynamics::TrainRecord& record);
   /// While the train stands: what those need who come now.
   void Settle(double simulated_s);
@@ -125,7 +128,8 @@ class MasterNode {
   RecordTopic<train_brake_msgs::BrakePressures> pressures_topic_;
   LiveCommands commands_;
   ros::Subscriber command_subscriber_;
-  ros::Publisher given_publisher_;
+  ros::Publisher given_publisher_, view_publisher_;
+  Clock::time_point next_view_;
   ros::Publisher ledger_publisher_, slides_publisher_, scenario_publisher_, diagnostics_publisher_;
   std::vector<ros::ServiceServer> services_;
   train_brake_msgs::TrainState state_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <ros/node_handle.h>
+#include <train_brake_msgs/DriverCommand.h>
 
 #include <condition_variable>
 #include <deque>
@@ -28,6 +29,7 @@ class RunClient {
   Answer Pause();
   Answer Step(unsigned exchanges);
   Answer SetRealTimeFactor(double factor);
+  Answer Give(const train_brake_msgs::DriverCommand& command);
   /// @param quantity, vehicle  as in SelectView
   Answer Select(const std::string& quantity, int vehicle);
 
