@@ -21,7 +21,8 @@ It is called as the train's master would call it, on a level track:
   repeat         the last exchange is answered again, and nothing moves
   repeatability  the same loads give the same bits
   finite         every reply is
-  velocity       it is the derivative of the displacement: |x1 - x0 - H (v0 + v1) / 2| <= H max|v1 - v0| / 2 + 1e-9 m
+  velocity       it is the derivative of the displacement: |x1 - x0 - H (v0 + v1) / 2| <= H q + 1e-9 m,
+                 q that below which |v1 - v0| stays in nine of ten exchanges
   passivity      what its motion shows of kinetic energy does not grow by more than the couplers' work
   mass           a step of 1 kN accelerates it as a mass of 0.2 to 1.5 times the declared one
   stability      the exchange interval H is stable with the train's connections and that mass
@@ -226,12 +227,12 @@ def repeatability(vehicles, seconds):
 def velocity(vehicles, seconds):
     motion = series(vehicles, random_loads(vehicles, 2, seconds))
     pairs = list(zip(motion, motion[1:]))
-    worst_m, turn_mps = 0.0, 0.0
+    worst_m, turns_mps = 0.0, []
     for i in range(vehicles.count):
         for (x0, v0), (x1, v1) in pairs:
             worst_m = max(worst_m, abs(x1[i] - x0[i] - vehicles.interval_s * (v0[i] + v1[i]) / 2))
-            turn_mps = max(turn_mps, abs(v1[i] - v0[i]))
-    allowed_m = 0.5 * vehicles.interval_s * turn_mps + EPSILON_M
+            turns_mps.append(abs(v1[i] - v0[i]))
+    allowed_m = vehicles.interval_s * sorted(turns_mps)[9 * len(turns_mps) // 10] + EPSILON_M
     found = f"differs from the trapezoid by up to {worst_m:.2g} m in an exchange, {allowed_m:.2g} m are allowed"
     if worst_m > allowed_m:
         raise Failure(found)
