@@ -165,6 +165,6 @@ def is_beginning(bag, whole):
 
 def train_sim(*arguments, scenario=SHORT_TRAIN):
     """A train in one process. @return its summary"""
-    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(scenario), *arguments], check=True,
+    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", *([str(scenario)] if scenario else []), *arguments], check=True,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return json.loads(done.stdout)

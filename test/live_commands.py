@@ -47,6 +47,15 @@ class LiveCommands(LaunchTest):
         self.assertIn(summary["state_digest"], verified.stdout)
         again = train_sim(scenario=launch.out / "replay.yaml")
         self.assertEqual(summary["state_digest"], again["state_digest"])
+        # A branch takes over what came live before it.
+        branch = self.folder / "branch"
+        train_sim("--resume", str(launch.out), "--set", "duration_s=9", "--out", str(branch), scenario=None)
+        longer = train_sim("--set", "duration_s=9", scenario=launch.out / "replay.yaml")
+        self.assertEqual(longer["state_digest"], json.loads((branch / "summary.json").read_text())["state_digest"])
+        verified = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(branch)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(0, verified.returncode, verified.stdout)
+        self.assertIn(longer["state_digest"], verified.stdout)
         without = train_sim(*[word for s in SETTINGS for word in ("--set", s)])
         self.assertNotEqual(summary["state_digest"], without["state_digest"])
         self.assertLess(summary["final_speed_kmh"]["mean"], without["final_speed_kmh"]["mean"])

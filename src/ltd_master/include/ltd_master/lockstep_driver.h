@@ -52,7 +52,7 @@ class LockstepDriver {
   /// Waits until his service can be called. Names him every 5 s.
   /// @throws DriverFailure, WaitInterrupted
   void Connect();
-  /// His answer. Where he is lost it says so, and `is_lost` is told by IsLost().
+  /// His answer; none where he is lost in the call, which a warning tells. See IsLost.
   /// @throws DriverFailure, WaitInterrupted
   Commands Ask(const train_brake_msgs::DriverView& view);
   /// He shall know with the next request what the train could not obey.
