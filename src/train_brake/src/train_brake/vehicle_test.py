@@ -115,8 +115,10 @@ class Vehicles:
                 raise Failure(f"{name} has {len(values)} values, {self.count} are expected")
             for i, value in enumerate(values):
                 if not math.isfinite(value):
-                    raise Failure(f"replied {name} = {value} for vehicle {self.told['first_vehicle'] + i}, "
-                                  f"{'at the start' if self.next == 0 else f'exchange {self.next - 1}'}")
+                    raise Failure(
+                        f"replied {name} = {value} for vehicle {self.told['first_vehicle'] + i}, "
+                        f"{'at the start' if self.next == 0 else f'exchange {self.next - 1}'}"
+                    )
         self.x, self.v = list(reply.head_displacement_m), list(reply.head_velocity_mps)
 
     def none(self):
@@ -141,15 +143,17 @@ def text_digest(text):
     data = text.encode()
     state = mix(0x9E3779B97F4A7C15 ^ len(data))
     for at in range(0, len(data), 8):
-        state = mix(state ^ int.from_bytes(data[at:at + 8].ljust(8, b"\0"), "little"))
+        state = mix(state ^ int.from_bytes(data[at : at + 8].ljust(8, b"\0"), "little"))
     return state
 
 
 def random_loads(vehicles, seed, seconds):
     """Loads that change slowly against an exchange: [(coupler forces, cylinder pressure)]."""
     seeded = random.Random(seed)
-    waves = [[(seeded.uniform(1e3, 2e4), seeded.uniform(0.2, 2.0), seeded.uniform(0, 6.28)) for _ in range(3)]
-             for _ in range(vehicles.count + 1)]
+    waves = [
+        [(seeded.uniform(1e3, 2e4), seeded.uniform(0.2, 2.0), seeded.uniform(0, 6.28)) for _ in range(3)]
+        for _ in range(vehicles.count + 1)
+    ]
     loads = []
     for k in range(vehicles.exchanges(seconds)):
         t = k * vehicles.interval_s
@@ -168,8 +172,10 @@ def protocol(vehicles, seconds):
         raise Failure(f"configure was refused: {reply.message}")
     wrong = [v for v in vehicles.v if abs(v - vehicles.told["speed_mps"]) > 1e-9]
     if wrong or any(vehicles.x):
-        raise Failure(f"it starts with v = {vehicles.v} m/s and x = {vehicles.x} m, not with the declared "
-                      f"{vehicles.told['speed_mps']:g} m/s and 0 m")
+        raise Failure(
+            f"it starts with v = {vehicles.v} m/s and x = {vehicles.x} m, not with the declared "
+            f"{vehicles.told['speed_mps']:g} m/s and 0 m"
+        )
     if vehicles.begin(version=vehicles.configure_request.PROTOCOL_VERSION + 1).ok:
         raise Failure("another version of the protocol was accepted")
     vehicles.begin()
@@ -260,8 +266,7 @@ def passivity(vehicles, seconds):
             turned_j += abs(done_j)
     energies_j = [vehicles.kinetic_j(mean_speeds(vehicles, second)) for _ in range(5)]
     allowed_j = PASSIVE * (before_j + turned_j) + 1e-6
-    gain_j = max(energies_j[0] - before_j - work_j,
-                 *(after - before for before, after in zip(energies_j, energies_j[1:])))
+    gain_j = max(energies_j[0] - before_j - work_j, *(after - before for before, after in zip(energies_j, energies_j[1:])))
     found = f"gains at most {gain_j:.3g} J over the couplers' work, {allowed_j:.3g} J are allowed"
     if gain_j > allowed_j:
         raise Failure(found)
@@ -276,7 +281,7 @@ def effective_mass(vehicles):
         for force in (0.0, PULL_N):
             vehicles.begin()
             forces = vehicles.none()
-            forces[:i + 1] = [force] * (i + 1)  # what pulls vehicle i, and nobody else
+            forces[: i + 1] = [force] * (i + 1)  # what pulls vehicle i, and nobody else
             vehicles.step(forces)
             v.append(vehicles.v[i])
         masses.append(PULL_N * vehicles.interval_s / (v[1] - v[0]) if v[1] != v[0] else math.inf)
@@ -286,8 +291,10 @@ def effective_mass(vehicles):
 def mass(vehicles, seconds):
     del seconds
     masses, declared = effective_mass(vehicles), vehicles.told["mass_kg"]
-    found = (f"a coupler head moves as a mass of {min(masses) / 1e3:.4g} to {max(masses) / 1e3:.4g} t, the vehicle has "
-             f"{declared / 1e3:.4g} t")
+    found = (
+        f"a coupler head moves as a mass of {min(masses) / 1e3:.4g} to {max(masses) / 1e3:.4g} t, the vehicle has "
+        f"{declared / 1e3:.4g} t"
+    )
     if not all(0.2 * declared <= m <= 1.5 * declared for m in masses):
         raise Failure(found)
     return found
@@ -313,8 +320,10 @@ def stability(vehicles, seconds):
 
 def slow(vehicles, seconds):
     del seconds
-    found = (f"{len(vehicles.reply_s)} exchanges, {1e3 * statistics.median(vehicles.reply_s):.3g} ms each (median), "
-             f"{1e3 * max(vehicles.reply_s):.3g} ms at most")
+    found = (
+        f"{len(vehicles.reply_s)} exchanges, {1e3 * statistics.median(vehicles.reply_s):.3g} ms each (median), "
+        f"{1e3 * max(vehicles.reply_s):.3g} ms at most"
+    )
     if max(vehicles.reply_s) > vehicles.deadline_s:
         raise Failure(f"{found}; {vehicles.deadline_s:g} s are allowed")
     return found
@@ -338,9 +347,12 @@ def judge(vehicles, seconds):
 @contextlib.contextmanager
 def built_in(namespace):
     """A wagon node of this program."""
-    process = subprocess.Popen(["rosrun", "wagon_node", "wagon_node", f"__ns:={namespace}", "__name:=vehicle_test_built_in",
-                                "_master_timeout_s:=0"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               start_new_session=True)
+    process = subprocess.Popen(
+        ["rosrun", "wagon_node", "wagon_node", f"__ns:={namespace}", "__name:=vehicle_test_built_in", "_master_timeout_s:=0"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
     try:
         yield f"{namespace}/vehicle_test_built_in"
     finally:
@@ -414,7 +426,9 @@ def main(words):
         print(f"  {'passed' if passed else 'FAILED'}  {name:13}  {found}")
     if all(passed for _, passed, _ in verdicts):
         with built_in(options["ns"]) as beside:
-            print("  beside it              " + differences(
-                vehicles, Vehicles(beside, own, group, dt_s, steps, float(options["deadline_s"])), seconds))
+            print(
+                "  beside it              "
+                + differences(vehicles, Vehicles(beside, own, group, dt_s, steps, float(options["deadline_s"])), seconds)
+            )
         return 0
     return 1
