@@ -80,7 +80,7 @@ TEST(BrakeHandle, StandsWhereTheNewestCommandHasPutIt) {
                                            {250, Brake(DriverCommandKind::kApply, 90.0), true}};
   DriverView view;
   const auto at = [&](double time_s) {
-    SetBrakeHandle(commands, given, time_s, 0.1, view);
+    SetBrakeHandle(0.0, commands, given, time_s, 0.1, view);
     return view.reduction_kpa;
   };
   EXPECT_EQ(at(0.9), 0.0);

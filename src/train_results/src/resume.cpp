@@ -74,6 +74,9 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double t
     keep(fmt::format("the initial speed of train.consist[{}] in m/s", i).c_str(), p.InitialSpeedOfGroup(i),
          q.InitialSpeedOfGroup(i));
   }
+  keep("initial_reduction_kpa", p.initial_reduction_kpa, q.initial_reduction_kpa);
+  if (p.driver.has_value() != q.driver.has_value())
+    throw std::invalid_argument("driver must be given, or not, as it was when a run is resumed");
   keep("start_position_m", p.start_position_m, q.start_position_m);
   if (p.initial_slack != q.initial_slack) {
     throw std::invalid_argument("initial_slack must stay as it is when a run is resumed");

@@ -61,8 +61,7 @@ bool CommandSchedule::IsDone() const {
 
 void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& given) {
   const auto give = [&](const DriverCommand& command, bool is_live) {
-    given.push_back({now.exchange, command, is_live});
-    given_.push_back(given.back());
+    Give({now.exchange, command, is_live}, given);
   };
   bool all_before_are_given = true;
   for (Awaited& awaited : commands_) {
@@ -82,6 +81,11 @@ void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& giv
   live_.clear();
   if (std::abs(now.speed_mps) > kStandingMps) has_moved_ = 1.0;
   if (until_ && (has_moved_ != 0.0 || !until_stands_) && until_->Holds(now)) end_is_reached_ = 1.0;
+}
+
+void CommandSchedule::Give(const GivenCommand& command, std::vector<GivenCommand>& given) {
+  given.push_back(command);
+  given_.push_back(command);
 }
 
 std::vector<std::string> CommandSchedule::NotGiven() const {

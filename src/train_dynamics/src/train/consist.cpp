@@ -20,6 +20,8 @@ Consist::Consist(const TrainParams& train) {
     const int type = static_cast<int>(vehicle_types.size());
     vehicle_types.push_back(group.vehicle);
     command_delay_s.push_back(group.command_delay_s);
+    initial_notch.push_back({group.initial_throttle_notch, group.initial_dynamic_brake_notch});
+    initial_slack.push_back(group.initial_slack);
     int within_unit = 0;
     if (group.vehicles_per_unit > 1) {
       within_unit = static_cast<int>(connection_types.size());

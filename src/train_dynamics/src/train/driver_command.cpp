@@ -29,6 +29,20 @@ std::string DriverCommand::Text() const {
   return IsOfLocomotives() ? name + " " + ShortestDecimal(notch) : name;
 }
 
+std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train) {
+  for (DriverCommand& command : commands) {
+    if (command.group.empty()) continue;
+    int first = 1;
+    for (const ConsistGroupParams& group : train.consist) {
+      for (int i = 0; group.name == command.group && group.vehicle.traction && i < group.count; ++i)
+        command.vehicles.push_back(first + i);
+      first += group.count;
+    }
+    if (!command.vehicles.empty()) command.group.clear();
+  }
+  return commands;
+}
+
 std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
                                              std::vector<std::size_t>* index) {
   std::vector<BrakeCommand> timed;

@@ -18,9 +18,10 @@ std::vector<PlaceAhead> StepsOn(const Steps& steps, double from_m, double to_m) 
 
 }  // namespace
 
-void SetBrakeHandle(const std::vector<DriverCommand>& commands, const std::vector<GivenCommand>& given,
-                    double time_s, double exchange_interval_s, DriverView& view) {
-  view.reduction_kpa = 0.0;
+void SetBrakeHandle(double initial_reduction_kpa, const std::vector<DriverCommand>& commands,
+                    const std::vector<GivenCommand>& given, double time_s, double exchange_interval_s,
+                    DriverView& view) {
+  view.reduction_kpa = initial_reduction_kpa;
   view.emergency = false;
   double newest_s = 0.0;
   const auto take = [&](const DriverCommand& command, double at_s) {

@@ -16,9 +16,15 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
     set.place.push_back(static_cast<int>(places_.size()));
     places_.push_back({type, static_cast<int>(set.place.size()) - 1});
   }
-  const double side = slack == SlackState::kStretched ? 0.5 : slack == SlackState::kBunched ? -0.5 : 0.0;
-  for (Set& set : sets_) {
-    set.Begin(side * std::visit([](const auto& law) { return law.Slack(); }, set.law));
+  const auto start_m = [](const Set& set, SlackState state) {
+    const double side = state == SlackState::kStretched ? 0.5 : state == SlackState::kBunched ? -0.5 : 0.0;
+    return side * std::visit([](const auto& law) { return law.Slack(); }, set.law);
+  };
+  for (Set& set : sets_) set.Begin(start_m(set, slack));
+  for (std::size_t c = 0; c < places_.size(); ++c) {
+    const std::optional<SlackState> own = consist.initial_slack[consist.vehicle_type[c + 1]];
+    Set& set = sets_[places_[c].set];
+    if (own) set.Begin(places_[c].at, start_m(set, *own));
   }
 }
 
@@ -35,6 +41,17 @@ void InTrainForces::Set::Begin(double at_m) {
     auto begin = of.AtRest(at_m);
     stored_j.assign(padded, StoredEnergy(of, at_m, begin));
     begin.ForEachField([&](double field) { memory.insert(memory.end(), padded, field); });
+  };
+  std::visit(remember, law);
+}
+
+void InTrainForces::Set::Begin(int at, double at_m) {
+  extension_m[at] = at_m;
+  const auto remember = [&](const auto& of) {
+    auto begin = of.AtRest(at_m);
+    stored_j[at] = StoredEnergy(of, at_m, begin);
+    std::size_t field = 0;
+    begin.ForEachField([&](double value) { memory[Padded() * field++ + at] = value; });
   };
   std::visit(remember, law);
 }

@@ -35,6 +35,16 @@ void Locomotives::Command(const LocomotiveCommand& command) {
   }
 }
 
+void Locomotives::Begin(const Consist& consist, const std::vector<double>& head_velocity_mps) {
+  for (Drive& drive : drives_) {
+    drive.command = consist.initial_notch[consist.vehicle_type[drive.vehicle]];
+    const double effort_n =
+        WantedEffort(drive.traction, drive.command, head_velocity_mps[drive.vehicle], drive.driven_weight_n);
+    drive.state.effort_n = effort_n;
+    drive.state.side = effort_n > 0.0 ? 1.0 : effort_n < 0.0 ? -1.0 : 0.0;
+  }
+}
+
 void Locomotives::Advance(double middle_s, double interval_s, const std::vector<double>& head_velocity_mps,
                           LoadArrays& loads) {
   if (drives_.empty()) return;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "train_dynamics/train/built_in_driver.h"
 #include "train_dynamics/train/exchange_stability.h"
 
 namespace train_dynamics {
@@ -146,6 +147,25 @@ void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnin
 
 namespace {
 
+/// ", which has ...", for a rule about names.
+std::string KnownNames(const std::vector<std::string>& names) {
+  if (names.empty()) return ", which has none";
+  std::string text = ": ";
+  for (const std::string& name : names) text += (text == ": " ? "" : ", ") + name;
+  return text;
+}
+
+/// The names of the groups that have locomotives, each once.
+std::vector<std::string> LocomotiveGroups(const TrainParams& train) {
+  std::vector<std::string> names;
+  for (const ConsistGroupParams& group : train.consist) {
+    if (group.vehicle.traction && !group.name.empty() &&
+        std::find(names.begin(), names.end(), group.name) == names.end())
+      names.push_back(group.name);
+  }
+  return names;
+}
+
 /// A text that speaks of commands[k], where k counts those of the brake, with the numbers of the whole list.
 std::string Renumbered(const std::string& text, const std::vector<std::size_t>& index) {
   const std::string list = "commands[";
@@ -257,12 +277,21 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
                         {"train"}});
     }
   }
+  JudgeDriver(broken);
   JudgeDips(broken);
   JudgeSlideProtection(broken);
+  const std::vector<DriverCommand> named = WithVehicles(commands, train);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!commands[i].IsOfLocomotives()) continue;
+    if (!named[i].group.empty()) {
+      broken.push_back(
+          {"commands" + Index(i) + ".group",
+           "must be the name of a group of locomotives of the train" + KnownNames(LocomotiveGroups(train)),
+           {"train"}});
+      continue;
+    }
     for (const BrokenRule& rule :
-         JudgeLocomotiveCommand(commands[i].OfLocomotives(0.0), "commands" + Index(i), train))
+         JudgeLocomotiveCommand(named[i].OfLocomotives(0.0), "commands" + Index(i), train))
       broken.push_back(rule);
   }
   return broken;
@@ -310,6 +339,77 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
   judge(timed, index);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!commands[i].time_s && !commands[i].IsOfLocomotives()) judge({commands[i].OfBrake(0.0)}, {i});
+  }
+}
+
+void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    const ConsistGroupParams& group = train.consist[i];
+    const std::string key = "train.consist" + Index(i) + ".initial_";
+    for (const bool is_throttle : {true, false}) {
+      const double notch = is_throttle ? group.initial_throttle_notch : group.initial_dynamic_brake_notch;
+      if (notch == 0.0) continue;
+      const auto& traction = group.vehicle.traction;
+      const int notches = !traction                 ? 0
+                          : is_throttle             ? traction->tractive_effort.throttle.Notches()
+                          : traction->dynamic_brake ? traction->dynamic_brake->Notches()
+                                                    : 0;
+      if (notch <= notches) continue;
+      broken.push_back({key + (is_throttle ? "throttle_notch" : "dynamic_brake_notch"),
+                        "must be at most " + std::to_string(notches) + ", what the vehicle of the group has",
+                        {"train"}});
+    }
+  }
+  if (initial_reduction_kpa > 0.0) {
+    if (!brake || !pressure_table.empty()) {
+      broken.push_back(
+          {"initial_reduction_kpa", "needs brake: a pressure_table has its own start", {"pressure_table"}});
+    } else {
+      for (const BrokenRule& rule : brake->BrokenRules(
+               {{0.0, BrakeCommandKind::kApply, initial_reduction_kpa}}, train.VehicleCount())) {
+        if (rule.key.rfind("commands", 0) == 0)
+          broken.push_back({"initial_reduction_kpa", rule.text, rule.reads});
+      }
+    }
+  }
+  if (!driver) return;
+  if (!Multiple(driver->period_s, exchange_interval_s)) {
+    broken.push_back(
+        {"driver.period_s", "must be a multiple of exchange_interval_s", {"exchange_interval_s"}});
+  }
+  if (!brake || !pressure_table.empty()) {
+    broken.push_back(
+        {"driver", "needs brake: a driver cannot drive with a pressure_table", {"pressure_table"}});
+  } else {
+    for (const bool is_first : {true, false}) {
+      const double reduction_kpa = is_first ? driver->first_reduction_kpa : driver->largest_reduction_kpa;
+      for (const BrokenRule& rule :
+           brake->BrokenRules({{0.0, BrakeCommandKind::kApply, reduction_kpa}}, train.VehicleCount())) {
+        if (rule.key.rfind("commands", 0) != 0) continue;
+        broken.push_back({std::string("driver.") + (is_first ? "first" : "largest") + "_reduction_kpa",
+                          rule.text,
+                          {"brake"}});
+      }
+    }
+  }
+  double last_m = start_position_m;
+  std::vector<std::string> stations;
+  for (const StationParams& station : track.Stations()) stations.push_back(station.name);
+  const std::vector<double> stops_m = StopPositions(*driver, track);
+  for (std::size_t i = 0; i < driver->stops.size(); ++i) {
+    const StopParams& stop = driver->stops[i];
+    const std::string key = "driver.stops" + Index(i);
+    if (!stop.position_m && std::find(stations.begin(), stations.end(), stop.station) == stations.end()) {
+      broken.push_back(
+          {key + ".station", "must be a station of the track" + KnownNames(stations), {"track"}});
+      continue;
+    }
+    if (stops_m[i] <= last_m) {
+      broken.push_back({key,
+                        "must lie ahead of the start and of the stop before, beyond " + Short(last_m) + " m",
+                        {"start_position_m", "track"}});
+    }
+    last_m = stops_m[i];
   }
 }
 
@@ -499,8 +599,18 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
 BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist) {
   std::vector<double> length_m;
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
-  return {*scenario.brake, TimedBrakeCommands(scenario.commands), consist.centre_m,
-          PressureGrid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()}, length_m};
+  const PressureGrid grid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()};
+  const std::vector<BrakeCommand> timed = TimedBrakeCommands(scenario.commands);
+  if (scenario.initial_reduction_kpa == 0.0)
+    return {*scenario.brake, timed, consist.centre_m, grid, length_m};
+  constexpr double kSettle_s = 120.0;
+  BrakeSystem applied(*scenario.brake, {{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}},
+                      consist.centre_m, grid, length_m);
+  std::vector<double> pressure_pa;
+  applied.PressuresAt(kSettle_s, pressure_pa);
+  applied.MoveAhead(kSettle_s);
+  for (const BrakeCommand& command : timed) applied.Command(command);
+  return applied;
 }
 
 }  // namespace train_dynamics

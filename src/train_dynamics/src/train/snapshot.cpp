@@ -10,7 +10,7 @@ namespace {
 
 // Each rises when the fields or their meaning change; in all versions of a train's checkpoint the scenario comes first.
 constexpr std::uint64_t kBlockFormat = 2;
-constexpr std::uint64_t kTrainFormat = 4;
+constexpr std::uint64_t kTrainFormat = 5;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
@@ -125,6 +125,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.brake);
   writer.Add(checkpoint.locomotives);
   writer.Add(checkpoint.driver);
+  writer.Add(checkpoint.built_in_driver);
   writer.Add(checkpoint.summary);
   writer.Add(checkpoint.output);
   return Finish(writer);
@@ -150,6 +151,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.brake = reader.Numbers();
   checkpoint.locomotives = reader.Numbers();
   checkpoint.driver = reader.Numbers();
+  checkpoint.built_in_driver = reader.Numbers();
   checkpoint.summary = reader.Numbers();
   checkpoint.output = reader.Block();
   reader.End();

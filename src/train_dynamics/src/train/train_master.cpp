@@ -29,15 +29,22 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
       forces_(consist, scenario.initial_slack,
               scenario.integrator == LtdIntegrator::kLeapfrog ? 0.5 * scenario.exchange_interval_s : 0.0,
               ExternalVehicles(scenario)),
-      locomotives_(consist, TimedLocomotiveCommands(scenario.commands)),
+      locomotives_(consist, TimedLocomotiveCommands(WithVehicles(scenario.commands, scenario.train))),
       curves_(scenario.track, consist, scenario.start_position_m),
       reply_(consist.vehicles(), scenario.DetailedVehicles()),
-      schedule_(scenario.commands, scenario.until) {
+      schedule_(WithVehicles(scenario.commands, scenario.train), scenario.until) {
   record_.vehicles = reply_;
   record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
   for (const ConnectionParams& type : consist.connection_types)
     can_part_ = can_part_ || type.strength_n > 0.0;
+  if (scenario.driver && scenario.brake) {
+    const double period = std::round(scenario.driver->period_s / scenario.exchange_interval_s);
+    driver_ = Driver{MakeDriversTrain(*scenario.driver, *scenario.brake, consist),
+                     StopPositions(*scenario.driver, scenario.track),
+                     static_cast<std::uint64_t>(period),
+                     {}};
+  }
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
   request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
@@ -47,6 +54,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
 void TrainMaster::Start() {
   transport_.Start(reply_);
   forces_.Begin(reply_.head_displacement_m);
+  locomotives_.Begin(consist_, reply_.head_velocity_mps);
   request_.ledger = true;
   ShowRecord();
 }
@@ -61,6 +69,9 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   forces_.SetMemory(checkpoint.connections);
   OpenPipes();
   schedule_.SetMemory(checkpoint.driver);
+  MemoryReader driver(checkpoint.built_in_driver);
+  if (driver_) driver_->state.ForEachField(driver);
+  driver.End();
   for (const GivenCommand& given : schedule_.Given()) Give(given);
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
@@ -95,6 +106,9 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   Locomotives(locomotives_).ForEachField(locomotives);
   checkpoint.locomotives = locomotives.Take();
   checkpoint.driver = schedule_.Memory();
+  MemoryWriter driver;
+  if (driver_) BuiltInDriverState(driver_->state).ForEachField(driver);
+  checkpoint.built_in_driver = driver.Take();
   return checkpoint;
 }
 
@@ -102,7 +116,7 @@ void TrainMaster::Exchange() {
   const double middle_s = time_s() + 0.5 * scenario_.exchange_interval_s;
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
   if (can_part_) OpenPipes();
-  if (!schedule_.IsDone()) GiveCommands();
+  if (!schedule_.IsDone() || DriverIsDue()) GiveCommands();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
   locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
 
@@ -155,7 +169,8 @@ const DriverView& TrainMaster::View(double ahead_m, bool is_shown_couplers) {
     view.throttle_notch = locomotives_.command(0).throttle_notch;
     view.dynamic_brake_notch = locomotives_.command(0).dynamic_brake_notch;
   }
-  SetBrakeHandle(scenario_.commands, schedule_.Given(), time_s(), scenario_.exchange_interval_s, view);
+  SetBrakeHandle(scenario_.initial_reduction_kpa, scenario_.commands, schedule_.Given(), time_s(),
+                 scenario_.exchange_interval_s, view);
   BrakeSystem brake(brake_);  // of a copy: whether somebody looks changes nothing
   brake.PressuresAt(time_s(), pressure_pa_);
   view.cylinder_kpa = 1e-3 * pressure_pa_.front();
@@ -186,6 +201,13 @@ void TrainMaster::GiveCommands() {
       {exchange_, time_s(), scenario_.start_position_m + reply_.head_displacement_m[0], momentum / mass},
       given_);
   for (std::size_t i = known; i < given_.size(); ++i) Give(given_[i]);
+  if (!DriverIsDue()) return;
+  const BuiltInDriverParams& params = *scenario_.driver;
+  for (const DriverCommand& command :
+       Drive(params, driver_->train, driver_->stops_m, View(params.sight_m), driver_->state)) {
+    schedule_.Give({exchange_, command, false}, given_);
+    Give(given_.back());
+  }
 }
 
 void TrainMaster::Give(const GivenCommand& given) {
@@ -214,6 +236,7 @@ void TrainMaster::ShowRecord() {
   forces_.AddMemoryTo(digest);
   brake_.ForEachField(MemoryDigest(digest));
   locomotives_.ForEachField(MemoryDigest(digest));
+  if (driver_) driver_->state.ForEachField(MemoryDigest(digest));
   digest_ = digest.value();
 
   double mass = 0.0, momentum = 0.0, moment = 0.0;

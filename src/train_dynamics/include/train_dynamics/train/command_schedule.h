@@ -67,6 +67,8 @@ class CommandSchedule {
 
   /// Judges all conditions, and appends to `given` what is to be given now, in the order of the list, live ones last.
   void Judge(const Situation& now, std::vector<GivenCommand>& given);
+  /// Takes note of a command that a built-in driver gives now, and appends it to `given`.
+  void Give(const GivenCommand& command, std::vector<GivenCommand>& given);
   /// Whether `until` has come true.
   bool EndIsReached() const { return end_is_reached_ != 0.0; }
 

@@ -17,6 +17,12 @@ inline constexpr std::initializer_list<std::pair<const char*, VehicleModel>> kVe
     {ModelName(VehicleModel::kLtd), VehicleModel::kLtd},
     {ModelName(VehicleModel::kLtdNoInertia), VehicleModel::kLtdNoInertia}};
 
+/// The names of the states of slack in configurations.
+inline constexpr std::initializer_list<std::pair<const char*, SlackState>> kSlackStates = {
+    {"stretched", SlackState::kStretched},
+    {"middle", SlackState::kMiddle},
+    {"bunched", SlackState::kBunched}};
+
 /// A run of equal vehicles, possibly in permanently joined units.
 struct ConsistGroupParams {
   VehicleParams vehicle;
@@ -27,6 +33,9 @@ struct ConsistGroupParams {
   std::optional<double> initial_speed_kmh = std::nullopt;
   double command_delay_s = 0.0;
   std::string external;
+  std::string name;
+  std::optional<SlackState> initial_slack = std::nullopt;
+  double initial_throttle_notch = 0.0, initial_dynamic_brake_notch = 0.0;
   bool locomotive = false;
 
   template <class Visitor>
@@ -49,6 +58,17 @@ struct ConsistGroupParams {
            "the vehicles are shown as locomotives; those with traction are, anyway");
     v.Number("command_delay_s", command_delay_s, kNonNegative,
              "delay of the driver's commands on their way to locomotives of the group");
+    v.Text("name", name, "by which commands name the locomotives of the group; several groups may share it");
+    v.Choice("initial_slack", initial_slack, kSlackStates,
+             "where the slack of the connections in front of the group's vehicles is at time 0; not given: "
+             "that of "
+             "the scenario");
+    v.Number("initial_throttle_notch", initial_throttle_notch, Range{0.0, 100.0, false, false},
+             "that locomotives of the group obey at time 0, with the steady effort of their speed");
+    v.Number("initial_dynamic_brake_notch", initial_dynamic_brake_notch, Range{0.0, 100.0, false, false},
+             "likewise, of the dynamic brake");
+    v.Check(initial_throttle_notch == 0.0 || initial_dynamic_brake_notch == 0.0, "initial_throttle_notch",
+            "must be 0 beside an initial_dynamic_brake_notch", {"initial_dynamic_brake_notch"});
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false},
               "vehicles that are permanently joined; 2: pairs, as of draw-bar wagons");
     if (vehicles_per_unit > 1)
@@ -92,6 +112,9 @@ struct Consist {
   std::vector<int> vehicle_type;             ///< [vehicle] index into vehicle_types and TrainParams::consist
   std::vector<int> locomotives;              ///< indices of vehicles, ascending
   std::vector<double> command_delay_s;       ///< [type of vehicle]
+  std::vector<NotchCommand> initial_notch;   ///< [type of vehicle]
+  std::vector<std::optional<SlackState>>
+      initial_slack;  ///< [type of vehicle] of the connections in front of it
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

@@ -51,6 +51,7 @@ struct DriverCommand {
   double reduction_kpa = kRequired;
   double notch = kRequired;
   std::vector<int> vehicles;
+  std::string group;
   std::optional<ConditionParams> when;
   std::optional<double> exchange;
 
@@ -69,7 +70,10 @@ struct DriverCommand {
       v.Number("notch", notch, Range{0.0, 100.0, false, false},
                "of throttle or dynamic brake; 0: off; each ends what the other has asked for");
       v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
-                 "locomotives that obey, from 1, or from -1 for the last; none: all");
+                 "locomotives that obey, from 1, or from -1 for the last; none: all, or those of group");
+      v.Text("group", group,
+             "name of the groups of the consist whose locomotives obey, in place of vehicles");
+      v.Check(group.empty() || vehicles.empty(), "group", "must not stand beside vehicles", {"vehicles"});
     }
     const int times = (time_s ? 1 : 0) + (when ? 1 : 0) + (exchange ? 1 : 0);
     v.Check(times > 0, "time_s", "must be given, or else when (a condition)", {"when", "exchange"});
@@ -88,6 +92,8 @@ struct DriverCommand {
   std::string Text() const;
 };
 
+/// The same commands with the numbers of the locomotives of their group, where they name one that has some.
+std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train);
 /// Those with a time, for the brake, in the order of the list.
 /// @param index  of each in the list; null: not wanted
 std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,

@@ -43,8 +43,10 @@ struct DriverView {
 };
 
 /// Sets where the driver's brake handle stands at a time, from the commands with a time and from those that were given.
-void SetBrakeHandle(const std::vector<DriverCommand>& commands, const std::vector<GivenCommand>& given,
-                    double time_s, double exchange_interval_s, DriverView& view);
+/// @param initial_reduction_kpa  at time 0
+void SetBrakeHandle(double initial_reduction_kpa, const std::vector<DriverCommand>& commands,
+                    const std::vector<GivenCommand>& given, double time_s, double exchange_interval_s,
+                    DriverView& view);
 
 /// Fills what a view has of the track under and ahead of a train: speed limits, grades, stations.
 class RouteSight {

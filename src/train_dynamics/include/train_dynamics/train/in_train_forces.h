@@ -80,6 +80,8 @@ class InTrainForces {
     explicit Set(const ConnectionParams& params) : law(params.Law()), strength_n(params.strength_n) {}
     /// Puts all connections to this extension, without force.
     void Begin(double extension_m);
+    /// Puts one of them to another extension, likewise.
+    void Begin(int at, double extension_m);
     int Padded() const { return static_cast<int>(rate_mps.size()); }
     ConnectionArrays Arrays();
 

@@ -31,6 +31,8 @@ class Locomotives {
   const NotchCommand& command(std::size_t i) const { return drives_[i].command; }  ///< that it obeys now
   const DriveState& drive(std::size_t i) const { return drives_[i].state; }
 
+  /// Lets each locomotive begin with the notches of its group at time 0, and with their steady effort.
+  void Begin(const Consist& consist, const std::vector<double>& head_velocity_mps);
   /// Moves the drives on by an exchange and sets the loads that they are: empty arrays, where there are no locomotives.
   /// @param middle_s           the middle of the exchange
   /// @param head_velocity_mps  [vehicle] of the coupler heads, at the exchange's start

@@ -9,6 +9,7 @@
 #include "train_dynamics/track/track.h"
 #include "train_dynamics/train/consist.h"
 #include "train_dynamics/train/driver_command.h"
+#include "train_dynamics/train/driver_params.h"
 #include "train_dynamics/vehicle/ltd_vehicle.h"
 #include "train_dynamics/vehicle/vehicle_model.h"
 #include "train_dynamics/vehicle_number.h"
@@ -25,7 +26,9 @@ struct ScenarioParams {
   std::string pressure_table;
   std::optional<BrakeSystemParams> brake;
   std::vector<DriverCommand> commands;
+  std::optional<BuiltInDriverParams> driver;
   double initial_speed_kmh = kRequired;
+  double initial_reduction_kpa = 0.0;
   double start_position_m = 0.0;
   SlackState initial_slack = SlackState::kStretched;
   double duration_s = kRequired;
@@ -51,16 +54,15 @@ struct ScenarioParams {
            "CSV file with the cylinder pressure of each vehicle over time; not given: brake computes them");
     v.Part("brake", brake, "brakes", "brake system, which computes the pressures from the driver's commands");
     v.List("commands", commands, "what the driver does, and when");
+    v.Group("driver", driver, "built-in driver, who holds a speed or the limits and stops at places");
     v.Check(brake || !pressure_table.empty(), "brake", "must be given, or else a pressure_table");
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false},
              "speed of the train at time 0; negative: backwards");
+    v.Number("initial_reduction_kpa", initial_reduction_kpa, kNonNegative,
+             "of the brake pipe at time 0, long since applied: cylinders have its pressure; 0: released");
     v.Number("start_position_m", start_position_m, kFinite,
              "position of the first vehicle's centre along the track at time 0");
-    v.Choice("initial_slack", initial_slack,
-             {{"stretched", SlackState::kStretched},
-              {"middle", SlackState::kMiddle},
-              {"bunched", SlackState::kBunched}},
-             "where the slack of all connections is at time 0");
+    v.Choice("initial_slack", initial_slack, kSlackStates, "where the slack of all connections is at time 0");
     v.Number("duration_s", duration_s, Range{0.0, 1e6},
              "simulated time at which the run ends; a multiple of record_interval_s");
     v.Group("until", until, "condition that ends the run earlier, at the next record");
@@ -121,6 +123,7 @@ struct ScenarioParams {
   void JudgeNodes(std::vector<BrokenRule>& broken) const;
   void JudgeTimes(std::vector<BrokenRule>& broken) const;
   void JudgeBrake(std::vector<BrokenRule>& broken) const;
+  void JudgeDriver(std::vector<BrokenRule>& broken) const;
   void JudgeDips(std::vector<BrokenRule>& broken) const;
   void JudgeSlideProtection(std::vector<BrokenRule>& broken) const;
 };

@@ -33,13 +33,14 @@ struct TrainCheckpoint {
   std::uint64_t exchange = 0;      ///< the next one; follows a record
   std::uint64_t state_digest = 0;  ///< chained over all records so far
   TimeZero at_time_zero;
-  std::vector<StateRow> vehicles;   ///< [vehicle], see VehicleBlock::Save
-  std::vector<double> connections;  ///< InTrainForces::Memory
-  std::vector<double> brake;        ///< BrakeSystem::ForEachField
-  std::vector<double> locomotives;  ///< Locomotives::ForEachField
-  std::vector<double> driver;       ///< CommandSchedule::Memory
-  std::vector<double> summary;      ///< RunSummary::Memory
-  Bytes output;                     ///< what the recorders of the run need to go on
+  std::vector<StateRow> vehicles;       ///< [vehicle], see VehicleBlock::Save
+  std::vector<double> connections;      ///< InTrainForces::Memory
+  std::vector<double> brake;            ///< BrakeSystem::ForEachField
+  std::vector<double> locomotives;      ///< Locomotives::ForEachField
+  std::vector<double> driver;           ///< CommandSchedule::Memory
+  std::vector<double> built_in_driver;  ///< BuiltInDriverState::ForEachField; empty without one
+  std::vector<double> summary;          ///< RunSummary::Memory
+  Bytes output;                         ///< what the recorders of the run need to go on
 };
 
 /// @throws SnapshotError if there is not a row for each of so many vehicles

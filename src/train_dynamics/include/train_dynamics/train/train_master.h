@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/train/built_in_driver.h"
 #include "train_dynamics/train/command_schedule.h"
 #include "train_dynamics/train/curving_loads.h"
 #include "train_dynamics/train/driver_view.h"
@@ -99,6 +100,14 @@ class TrainMaster {
   void ShowRecord();
   /// Tells the brake of connections that have broken since it was told last.
   void OpenPipes();
+  /// The built-in driver with what he knows and remembers.
+  struct Driver {
+    DriversTrain train;
+    std::vector<double> stops_m;
+    std::uint64_t period;  ///< [exchanges]
+    BuiltInDriverState state;
+  };
+  bool DriverIsDue() const { return driver_ && exchange_ % driver_->period == 0; }
   void GiveCommands();
   void Give(const GivenCommand& given);
 
@@ -116,6 +125,7 @@ class TrainMaster {
   ExchangeRequest request_;
   ExchangeReply reply_;
   CommandSchedule schedule_;
+  std::optional<Driver> driver_;
   std::optional<RouteSight> sight_;  ///< of a driver, once there is one
   DriverView view_;
   std::vector<double> pressure_pa_;  ///< [vehicle] that the driver sees
