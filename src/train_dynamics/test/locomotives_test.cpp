@@ -108,6 +108,33 @@ TEST(Locomotives, PullATrainWithTheBooksClosed) {
   EXPECT_NEAR(train.master.locomotives().FuelMass(), train.master.locomotives().EnergyTaken() / 42.7e6, 1e-9);
 }
 
+TEST(Locomotives, TheLedgerClosesWithEveryTermOfEq1InBothModels) {
+  for (const char* model : {"2d", "ltd"}) {
+    const Outcome outcome = Simulate(
+        "emergency", {std::string("model=") + model,
+                      "train={name: all, connection: friction_gear, consist: [{vehicle: c44ac}, {vehicle: "
+                      "ore_wagon_loaded, count: "
+                      "4}, {vehicle: c44ac_trailing}]}",
+                      "track={name: hill, grades: [{from_m: -1000, grade_percent: 0.5}, {from_m: 80, "
+                      "grade_percent: -1}], curves: "
+                      "[{from_m: 20, to_m: 150, radius_m: 400}, {from_m: 150, to_m: 300, radius_m: -600}]}",
+                      "brake=single_vehicle",
+                      "commands=[{time_s: 0, kind: throttle, notch: 8}, {time_s: 8, kind: dynamic_brake, "
+                      "notch: 8}, {time_s: 20, "
+                      "kind: apply, reduction_kpa: 80}]",
+                      "initial_speed_kmh=40", "initial_slack=bunched", "duration_s=32",
+                      "record_interval_s=0.5", "detail_vehicles=[]"});
+    ExpectLedgerCloses(outcome, model);
+    EXPECT_GT(outcome.ledger.traction_work_j, 1e6) << model;
+    EXPECT_NE(outcome.ledger.gravity_work_j, 0.0) << model;
+    for (const auto& [element, energy] : outcome.ledger.dissipated_j) {
+      if (element == "brake_shoes" || element == "dynamic_brake" || element == "rolling_resistance" ||
+          element == "curving_resistance" || element == "air_drag" || element == "draft_gears")
+        EXPECT_GT(energy, 1e4) << model << ": " << element;
+    }
+  }
+}
+
 TEST(Locomotives, DynamicBrakeWaitsForTheChangeOver) {
   PulledTrain train({"duration_s=60", "initial_speed_kmh=40"});
   train.master.Start();

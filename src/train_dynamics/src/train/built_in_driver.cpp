@@ -300,8 +300,10 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
   constexpr double kLead_s = 15.0;
   const SpeedGoal goal = GoalAt(p, view, stop_m, kLead_s);
   const double missing_mps = goal.speed_mps - v;
+  // The planned deceleration is of one who is near the goal: a slow train need not slow down yet.
+  const double planned_mps2 = goal.acceleration_mps2 * std::clamp(2.0 * v / goal.speed_mps - 1.0, 0.0, 1.0);
   const double demand =
-      std::clamp(goal.acceleration_mps2 + missing_mps / p.response_time_s, -kLargestDemand, kLargestDemand);
+      std::clamp(planned_mps2 + missing_mps / p.response_time_s, -kLargestDemand, kLargestDemand);
   const double force_n =
       train.moving_mass_kg * demand + train.mass_kg * (kGravity * view.mean_grade + state.resistance_mps2);
   const int lever = static_cast<int>(state.lever);

@@ -78,7 +78,7 @@ double StoppingDistance(const BuiltInDriverParams& p, const DriversTrain& train,
 
 /// What the driver does now.
 ///
-///   force = M_moving (b + (goal - v) / T) + M (g i + r)      T = response_time_s; r learnt, i the mean grade
+///   force = M_moving (b c + (goal - v) / T) + M (g i + r)      c = 2 v / goal - 1 in [0, 1]; r learnt, i the mean grade
 ///
 /// He gives it by these rules: traction and brakes never work together, except to start uphill; the dynamic brake comes
 /// first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. A notch is taken when
