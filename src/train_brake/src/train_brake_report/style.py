@@ -89,8 +89,14 @@ def label_ends(axes: Axes, ends) -> None:
                                   "relpos": (0.0, 0.5)})
 
 
+MOST_COMMANDS = 12  # that a figure names
+
+
 def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = False) -> None:
-    """Thin lines at the times of the driver's commands."""
+    """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their names."""
+    if len(commands) > MOST_COMMANDS:
+        commands = [command for command in commands if "notch" not in command]
+        named = named and len(commands) <= MOST_COMMANDS
     y, offset, align = (0.0, 4, "bottom") if at_bottom else (1.0, -3, "top")
     for command in commands:
         axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
