@@ -130,6 +130,10 @@ fuzz: deps ## hostile input for every parser, FUZZ_SECONDS=60 each (clang), in b
 check-deps: ## check who includes whom
 	@tools/check_dependencies.sh
 
+.PHONY: reference
+reference: build ## renew what is made from the code: docs/configuration.md, config/schema/, docs/ros_interface.md
+	@$(in_workspace) && tools/reference.sh
+
 .PHONY: format
 format: ## format the C++ code in place (clang-format 14)
 	@$(sources) | xargs clang-format -i

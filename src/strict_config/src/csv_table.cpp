@@ -13,6 +13,8 @@
 namespace strict_config {
 namespace {
 
+constexpr std::size_t kListedColumns = 12;  ///< in a message: a table may have one for each vehicle
+
 constexpr const char* kNoteColumn = "note";
 
 std::string Trimmed(const std::string& text) {
@@ -195,7 +197,8 @@ bool ReadRows(const std::string& file, CsvTable& table, ErrorList& errors, const
 const std::vector<double>* CsvTable::Column(const std::string& name, ErrorList& errors) const {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found != columns.end()) return &values[static_cast<std::size_t>(found - columns.begin())];
-  errors.Add(file, header_line, "", "has no column " + name + KeyHint(name, columns, "column"));
+  errors.Add(file, header_line, "",
+             "has no column " + name + KeyHint(name, columns, "column", kListedColumns));
   return nullptr;
 }
 

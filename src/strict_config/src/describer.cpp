@@ -15,8 +15,9 @@ std::string ListText(const Numbers& values) {
 }
 
 template <class Items>
-auto FindKey(Items& items, const std::string& key) {
-  return std::find_if(items.begin(), items.end(), [&key](const auto& item) { return item.key == key; });
+auto FindSame(Items& items, const KeyDescription& described) {
+  return std::find_if(items.begin(), items.end(),
+                      [&described](const KeyDescription& item) { return item.IsSame(described); });
 }
 
 }  // namespace
@@ -36,8 +37,8 @@ KeyDescription& Describer::Add(const char* key, KeyDescription::Kind kind, const
   return keys_.back();
 }
 
-const KeyDescription* Describer::Known(const char* key) const {
-  const auto known = FindKey(known_, key);
+const KeyDescription* Describer::Known(const KeyDescription& described) const {
+  const auto known = FindSame(known_, described);
   return known == known_.end() ? nullptr : &*known;
 }
 
@@ -106,25 +107,28 @@ void KeyCollection::Take(const Describer& visit, const std::pair<std::string, st
   Visit taken{set, {}};
   auto before = keys_.end();  // where a new key goes: before the one that is called after it
   for (auto described = visit.keys().rbegin(); described != visit.keys().rend(); ++described) {
-    taken.called.emplace_back(described->key, !described->may_be_left_out);
-    const auto known = FindKey(keys_, described->key);
+    KeyDescription called;
+    called.key = described->key;
+    called.type = described->type;
+    taken.called.emplace_back(std::move(called), !described->may_be_left_out);
+    const auto known = FindSame(keys_, *described);
     before = known == keys_.end() ? keys_.insert(before, *described) : known;
   }
   visits_.push_back(std::move(taken));
 }
 
 std::vector<KeyDescription> KeyCollection::Finish() const {
-  const auto called_in = [](const Visit& visit, const std::string& key) {
+  const auto called_in = [](const Visit& visit, const KeyDescription& key) {
     return std::find_if(visit.called.begin(), visit.called.end(),
-                        [&key](const auto& called) { return called.first == key; });
+                        [&key](const auto& called) { return called.first.IsSame(key); });
   };
   std::vector<KeyDescription> keys = keys_;
   for (KeyDescription& described : keys) {
     const auto is_known = [&](const Visit& visit) {
-      return called_in(visit, described.key) != visit.called.end();
+      return called_in(visit, described) != visit.called.end();
     };
     const auto is_required = [&](const Visit& visit) {
-      const auto called = called_in(visit, described.key);
+      const auto called = called_in(visit, described);
       return called != visit.called.end() && called->second;
     };
     const bool required_anywhere = std::any_of(visits_.begin(), visits_.end(), is_required);

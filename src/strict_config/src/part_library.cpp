@@ -73,8 +73,8 @@ NodePtr WithoutBase(const NodePtr& map) {
 
 }  // namespace
 
-PartLibrary::PartLibrary(std::vector<fs::path> search_roots, ErrorList& errors)
-    : search_roots_(std::move(search_roots)), errors_(errors) {}
+PartLibrary::PartLibrary(std::vector<fs::path> search_roots, ErrorList& errors, std::string remedy)
+    : search_roots_(std::move(search_roots)), errors_(errors), remedy_(std::move(remedy)) {}
 
 NodePtr PartLibrary::Open(const fs::path& file, const KeyPath& path) {
   const auto [cached, is_new] = files_.try_emplace(Normal(file));
@@ -229,7 +229,8 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
     text += ", but there is no folder " + kind + " in " +
             DisplayPath(reference.source.document->search_from) + " or above it";
     for (const fs::path& root : search_roots_) text += ", nor in " + DisplayPath(root);
-    text += "; or give a file, or set TRAIN_BRAKE_CONFIG to the config folder of train_brake";
+    text += "; or give a file";
+    if (!remedy_.empty()) text += ", or " + remedy_;
   } else {
     text += ", but there is no " + reference.text + kExtension + " in " + Join(searched, searched.size());
     const std::string nearest = Nearest(reference.text, names);
@@ -255,9 +256,9 @@ bool IsTableReference(const Node& value) {
   return value.kind == Node::Kind::kScalar && fs::path(value.text).extension() == ".csv";
 }
 
-std::vector<fs::path> SearchRootsFromEnvironment() {
+std::vector<fs::path> FoldersInEnvironment(const char* variable) {
   std::vector<fs::path> roots;
-  const char* const value = std::getenv("TRAIN_BRAKE_CONFIG");
+  const char* const value = std::getenv(variable);
   std::istringstream list(value ? value : "");
   for (std::string root; std::getline(list, root, ':');) {
     if (!root.empty()) roots.emplace_back(root);

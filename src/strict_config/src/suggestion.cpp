@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t kLongestWord = 64;  ///< beyond this, a word is not worth a comparison
 constexpr std::size_t kShortestRun = 3;   ///< below this, part of a word says nothing
-constexpr std::size_t kListedWords = 12;
 
 std::string Normal(std::string word) {
   for (char& c : word) {
@@ -91,7 +90,7 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
 }
 
 std::string KeyHint(const std::string& written, const std::vector<std::string>& known,
-                    const std::string& noun) {
+                    const std::string& noun, std::size_t max_listed) {
   const std::string mine = Normal(written);
   const std::string stem = SplitUnit(mine).stem;
   const auto same = std::find_if(known.begin(), known.end(), [&](const std::string& word) {
@@ -103,7 +102,7 @@ std::string KeyHint(const std::string& written, const std::vector<std::string>& 
   }
   const std::string nearest = Nearest(written, known);
   if (!nearest.empty()) return "; did you mean " + nearest + "?";
-  return known.empty() ? "" : "; known " + noun + "s: " + Join(known, kListedWords);
+  return known.empty() ? "" : "; known " + noun + "s: " + Join(known, max_listed);
 }
 
 std::string Join(const std::vector<std::string>& words, std::size_t max) {

@@ -720,10 +720,10 @@ TEST_F(PartsTest, FromSearchRoots) {
   EXPECT_EQ(LoadFile<Scenario>("home/s.yaml", options).tail.value().slack_m, 0.03);
   EXPECT_EQ(Errors(), "");
 
-  setenv("TRAIN_BRAKE_CONFIG", "/a::/b/c", 1);
-  EXPECT_EQ(SearchRootsFromEnvironment(), (std::vector<fs::path>{"/a", "/b/c"}));
-  unsetenv("TRAIN_BRAKE_CONFIG");
-  EXPECT_TRUE(SearchRootsFromEnvironment().empty());
+  setenv("PARTS_OF_THIS_TEST", "/a::/b/c", 1);
+  EXPECT_EQ(FoldersInEnvironment("PARTS_OF_THIS_TEST"), (std::vector<fs::path>{"/a", "/b/c"}));
+  unsetenv("PARTS_OF_THIS_TEST");
+  EXPECT_TRUE(FoldersInEnvironment("PARTS_OF_THIS_TEST").empty());
 }
 
 TEST_F(PartsTest, UnknownReferences) {
@@ -731,6 +731,7 @@ TEST_F(PartsTest, UnknownReferences) {
   Put("scenarios/s.yaml", "tail: f_typ\nspare_couplers: [x/y.yaml, 'a b', '']\n");
   LoadOptions options;
   options.search_roots = {root / "share"};
+  options.search_remedy = "set MY_PARTS to a folder of parts";
   LoadFile<Scenario>("scenarios/s.yaml", options);
   EXPECT_EQ(
       Errors(),
@@ -747,7 +748,7 @@ TEST_F(PartsTest, UnknownReferences) {
       "scenarios/a.yaml:2: parts[0] names 'b', but there is no folder assemblies in scenarios or above it, "
       "nor in " +
           WithoutFolder(options.search_roots[0].string()) +
-          "; or give a file, or set TRAIN_BRAKE_CONFIG to the config folder of train_brake");
+          "; or give a file, or set MY_PARTS to a folder of parts");
 }
 
 TEST_F(PartsTest, ErrorsInAPartNameItsFileAndTheWholePath) {

@@ -147,6 +147,34 @@ TEST(Describer, TellsWithWhichOthersAKeyMustBeGiven) {
   EXPECT_EQ(Key(keys, "speed_mps").default_value, "");
 }
 
+/// One key for two structs.
+struct Either {
+  Law law = Law::kOne;
+  std::vector<Wheel> wheels;
+  std::vector<Needy> needs;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Choice("law", law, {{"one", Law::kOne}, {"two", Law::kTwo}}, "which law");
+    if (law == Law::kOne) v.List("sources", wheels, "wheels");
+    if (law == Law::kTwo) v.List("sources", needs, "needs");
+  }
+};
+
+TEST(Describer, DescribesOneKeyForTwoStructsTwice) {
+  const std::vector<KeyDescription> keys = DescribeKeys<Either>();
+  ASSERT_EQ(keys.size(), 3u);
+  EXPECT_EQ(keys[1].key, "sources");
+  EXPECT_EQ(keys[2].key, "sources");
+  std::string text;
+  for (const KeyDescription& described : {keys[1], keys[2]})
+    text += described.meaning + " with " + Conditions(described.known_with) + " " +
+            described.keys.back().key + ";";
+  EXPECT_TRUE(text == "wheels with law one radius_m;needs with law two speed_mps;" ||
+              text == "needs with law two speed_mps;wheels with law one radius_m;")
+      << text;
+}
+
 TEST(Describer, TakesDefaultsFromThePrototype) {
   Cart cart;
   cart.law = Law::kTwo;

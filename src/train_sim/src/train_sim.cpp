@@ -1,17 +1,22 @@
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <functional>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "strict_config/error_list.h"
 #include "strict_config/scalar.h"
+#include "strict_config/suggestion.h"
 #include "train_console/console.h"
 #include "train_sim/brake_commands.h"
 #include "train_sim/check_command.h"
+#include "train_sim/keys_command.h"
+#include "train_sim/new_command.h"
 #include "train_sim/route_command.h"
 #include "train_sim/run_command.h"
 #include "train_sim/vehicle_commands.h"
@@ -22,10 +27,12 @@ namespace {
 constexpr const char* kDescription =
     "Simulates the braking of long trains, all vehicles in this process, without a ROS master.\n"
     "\n"
+    "  train_sim new my_trains\n"
     "  train_sim run config/scenarios/emergency.yaml --out results/emergency\n"
     "  train_sim run config/scenarios/minimum.yaml --model ltd --set track.grades[0].grade_percent=-1\n"
     "  train_sim run --resume results/emergency\n"
     "  train_sim check my_scenario.yaml\n"
+    "  train_sim keys vehicle.brake_rigging\n"
     "  train_sim route my_line.csv --plot my_line.svg\n"
     "  train_sim verify results/emergency\n"
     "  train_sim air-test config/scenarios/full_service_ab.yaml\n"
@@ -58,6 +65,19 @@ CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std
                    "replace a value: --set path=value, e.g. train.connection.draft_gear.slack_m=0.02")
       ->allow_extra_args(false);
   return input;
+}
+
+/// @throws std::invalid_argument naming the likely one
+void RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
+  const std::string given = argc > 1 ? argv[1] : "";
+  if (given.empty() || given[0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), given) != known.end()) return;
+  const std::string nearest = strict_config::Nearest(given, known);
+  throw std::invalid_argument("there is no command " + given +
+                              (nearest.empty() ? "" : "; did you mean " + nearest + "?") +
+                              " Commands: " + strict_config::Join(known, known.size()));
 }
 
 int Main(int argc, char** argv) {
@@ -130,6 +150,23 @@ int Main(int argc, char** argv) {
   resolve->callback(
       [&] { command = [&] { return train_sim::ResolveScenario(resolved.scenario, resolved.overrides); }; });
 
+  train_sim::KeysOptions keys;
+  CLI::App* show_keys = app.add_subcommand(
+      "keys", "print the keys of configuration files: unit, rule, default, meaning, example");
+  show_keys->add_option("PATH", keys.path,
+                        "which: vehicle, scenario.until, train.connection.slack_m, slack_m; default: all");
+  CLI::Option* markdown = show_keys->add_flag("--markdown", keys.markdown, "print docs/configuration.md");
+  show_keys->add_option("--json-schema", keys.schema_kind, "print the JSON schema of files of this kind")
+      ->type_name("KIND")
+      ->excludes(markdown);
+  show_keys->callback([&] { command = [&] { return train_sim::PrintKeys(keys); }; });
+
+  std::string folder;
+  CLI::App* start_folder = app.add_subcommand(
+      "new", "start a folder of one's own with a train, a route, a scenario and a launch file that run");
+  start_folder->add_option("FOLDER", folder, "a new or an empty folder")->required();
+  start_folder->callback([&] { command = [&] { return train_sim::StartFolder(folder); }; });
+
   train_sim::RouteOptions route;
   CLI::App* show_route = app.add_subcommand(
       "route", "check a route - a track, a table of its points (CSV) or a scenario's - and draw it");
@@ -175,6 +212,7 @@ int Main(int argc, char** argv) {
   brake_weight->callback(
       [&] { command = [&] { return train_sim::PrintBrakeWeight(vehicle, options.overrides); }; });
 
+  RefuseUnknownCommand(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -42,6 +42,8 @@ struct KeyDescription {
   };
 
   std::string key;
+  const void* type =
+      nullptr;  ///< differs where one key stands for different structs with different values of another
   Kind kind = Kind::kNumber;
   std::string meaning;
   Range range{};                        ///< of numbers
@@ -57,6 +59,7 @@ struct KeyDescription {
   std::vector<KeyCondition>
       required_with;  ///< it must be given where all hold; none: where it is known, always or never
 
+  bool IsSame(const KeyDescription& other) const { return key == other.key && type == other.type; }
   bool IsMap() const { return kind == Kind::kGroup || kind == Kind::kPart; }
   bool IsListOfMaps() const { return kind == Kind::kList || kind == Kind::kParts; }
   bool IsPart() const { return kind == Kind::kPart || kind == Kind::kParts; }
@@ -140,8 +143,8 @@ class Describer {
 
  private:
   KeyDescription& Add(const char* key, KeyDescription::Kind kind, const char* meaning);
-  /// What an earlier visit has described under this key, or null.
-  const KeyDescription* Known(const char* key) const;
+  /// What an earlier visit has described under the key of a struct, or null.
+  const KeyDescription* Known(const KeyDescription& described) const;
 
   template <class Struct>
   void AddMap(const char* key, KeyDescription::Kind kind, const char* folder, const Struct& value,
@@ -171,7 +174,7 @@ class KeyCollection {
  private:
   struct Visit {
     std::pair<std::string, std::string> set;
-    std::vector<std::pair<std::string, bool>> called;  ///< keys, and whether they had to be given
+    std::vector<std::pair<KeyDescription, bool>> called;  ///< keys, and whether they had to be given
   };
 
   std::vector<KeyDescription> keys_;
@@ -205,13 +208,18 @@ struct MayBeTable : std::false_type {};
 template <class Struct>
 struct MayBeTable<Struct, std::void_t<decltype(Struct::kTableKey)>> : std::true_type {};
 
+/// Stands for a struct.
+template <class Struct>
+inline constexpr char kTypeTag = 0;
+
 template <class Struct>
 void Describer::AddMap(const char* key, KeyDescription::Kind kind, const char* folder, const Struct& value,
                        const char* meaning) {
   KeyDescription& described = Add(key, kind, meaning);
+  described.type = &kTypeTag<Struct>;
   described.folder = folder;
   described.may_be_table = kind == KeyDescription::Kind::kPart && MayBeTable<Struct>::value;
-  if (const KeyDescription* const known = Known(key)) {
+  if (const KeyDescription* const known = Known(described)) {
     described.may_be_left_out = known->may_be_left_out;
     return;
   }
@@ -231,10 +239,11 @@ template <class Struct>
 void Describer::AddList(const char* key, KeyDescription::Kind kind, const char* folder,
                         const std::vector<Struct>& values, const char* meaning) {
   KeyDescription& described = Add(key, kind, meaning);
+  described.type = &kTypeTag<Struct>;
   described.folder = folder;
   described.may_be_table = true;
   described.default_value = values.empty() ? "[]" : "[{}]";
-  if (Known(key) == nullptr) described.keys = DescribeKeys(Struct());
+  if (Known(described) == nullptr) described.keys = DescribeKeys(Struct());
 }
 
 }  // namespace strict_config

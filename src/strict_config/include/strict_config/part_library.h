@@ -23,7 +23,9 @@ using FileChain = std::vector<std::filesystem::path>;
 /// A list of maps may be a reference to a file that ends in .csv: a table with a row for each of its maps.
 class PartLibrary {
  public:
-  PartLibrary(std::vector<std::filesystem::path> search_roots, ErrorList& errors);
+  /// @param remedy  what an error about a name without any folder to look in ends with: what the program's user can do,
+  ///                as "set MY_PARTS to the folder of parts"; may be empty
+  PartLibrary(std::vector<std::filesystem::path> search_roots, ErrorList& errors, std::string remedy = "");
 
   /// The root of a file, or null after reporting an error. A file is parsed once, however often it is used.
   NodePtr Open(const std::filesystem::path& file, const KeyPath& path);
@@ -61,6 +63,7 @@ class PartLibrary {
 
   std::vector<std::filesystem::path> search_roots_;
   ErrorList& errors_;
+  std::string remedy_;
   std::map<std::filesystem::path, NodePtr> files_;
   std::map<NodePtr, std::filesystem::path> located_;  ///< the file of each reference
   std::set<std::string> ambiguities_;
@@ -69,7 +72,7 @@ class PartLibrary {
 /// Whether a value is a reference to a table.
 bool IsTableReference(const Node& value);
 
-/// The folders listed in the environment variable TRAIN_BRAKE_CONFIG, separated by ':'.
-std::vector<std::filesystem::path> SearchRootsFromEnvironment();
+/// The folders listed in an environment variable, separated by ':'.
+std::vector<std::filesystem::path> FoldersInEnvironment(const char* variable);
 
 }  // namespace strict_config

@@ -25,6 +25,8 @@ namespace strict_config {
 struct LoadOptions {
   /// Folders in which parts are looked for after the file's own folder and its ancestors.
   std::vector<std::filesystem::path> search_roots;
+  /// What can be done where there is no folder to look in; see PartLibrary.
+  std::string search_remedy;
   /// Values that replace those of the files: "train.coupler.slack_m=0.01".
   std::vector<std::string> overrides;
   /// What the paths in messages start with ("scenario" gives scenario.dt_s); not part of override paths.
@@ -270,7 +272,7 @@ template <class Struct, class Rules>
 Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors, const Rules& rules) {
   Struct value;
   ReadSession session{
-      errors, PartLibrary(options.search_roots, errors),
+      errors, PartLibrary(options.search_roots, errors, options.search_remedy),
       Overrides(options.overrides, std::filesystem::path(file).parent_path(), options.root_name, errors)};
   const Reader::Place root = Reader::RootPlace(session, file, options, Reader::TableKey<Struct>(0));
   if (root.state != Reader::Place::State::kMap) return value;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
 
 /// What follows "is not a known key": how to repair it, as "; did you mean ...?", "; the key is ..., in km/h"
 /// where only the unit differs, or else the known keys.
-/// @param noun  what the words are: "key", "column"
+/// @param noun        what the words are: "key", "column"
+/// @param max_listed  the number of known words beyond which the list is cut
 std::string KeyHint(const std::string& written, const std::vector<std::string>& known,
-                    const std::string& noun = "key");
+                    const std::string& noun = "key", std::size_t max_listed = 1000);
 
 /// "a, b, c", cut after `max` words.
 std::string Join(const std::vector<std::string>& words, std::size_t max);

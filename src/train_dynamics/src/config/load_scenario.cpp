@@ -30,12 +30,15 @@ using strict_config::LoadOptions;
 using strict_config::LoadText;
 using strict_config::ReadCsvTable;
 using strict_config::Reader;
-using strict_config::SearchRootsFromEnvironment;
 using strict_config::Write;
+
+/// The environment variable that lists folders of parts.
+constexpr const char* kPartsVariable = "TRAIN_BRAKE_CONFIG";
 
 LoadOptions OptionsFor(const std::vector<std::string>& overrides, const std::string& kind) {
   LoadOptions options;
-  options.search_roots = SearchRootsFromEnvironment();
+  options.search_roots = PartFolders();
+  options.search_remedy = std::string("set ") + kPartsVariable + " to the config folder of train_brake";
   options.overrides = overrides;
   options.kind = kind;
   return options;
@@ -147,6 +150,10 @@ bool IsScenario(const std::string& file) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> PartFolders() {
+  return strict_config::FoldersInEnvironment(kPartsVariable);
+}
 
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
   std::optional<Consist> consist;

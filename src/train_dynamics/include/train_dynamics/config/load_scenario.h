@@ -10,6 +10,10 @@
 
 namespace train_dynamics::config {
 
+/// The folders in which parts are looked for besides those around a file: those that the environment variable
+/// TRAIN_BRAKE_CONFIG lists, separated by ':'.
+std::vector<std::filesystem::path> PartFolders();
+
 /// A scenario that is ready to run.
 struct LoadedScenario {
   ScenarioParams params;

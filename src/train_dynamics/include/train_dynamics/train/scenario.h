@@ -47,7 +47,7 @@ struct ScenarioParams {
     v.Text("description", description, "what the scenario shows");
     v.Choice("model", model, kVehicleModels,
              "of the groups of vehicles that name none: 2d: bodies, suspension, wheel-rail contact in the "
-             "plane; ltd: one mass with rotating inertia; ltd_no_inertia: one mass");
+             "plane; ltd: one mass with rotating inertia; ltd-no-inertia: one mass");
     v.Part("train", train, "trains", "the train");
     v.Part("track", track, "tracks", "the track; not given: level and straight");
     v.Text("pressure_table", pressure_table,

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace train_sim {
+
+struct KeysOptions {
+  std::string path;         ///< of which keys; empty: all
+  bool markdown = false;    ///< the page docs/configuration.md
+  std::string schema_kind;  ///< print the JSON schema of this kind of file; empty: none
+};
+
+/// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists by which they are read.
+///
+/// Examples are looked for in the folders of TRAIN_BRAKE_CONFIG.
+/// @throws std::invalid_argument where the path names no key
+int PrintKeys(const KeysOptions& options);
+
+}  // namespace train_sim

@@ -1,0 +1,14 @@
+#!/bin/sh
+# Renews the pages and schemas that are made from the code. `make reference` calls it in the sourced workspace.
+set -eu
+cd "$(dirname "$0")/.."
+export TRAIN_BRAKE_CONFIG="$PWD/config"
+program=devel/lib/train_sim/train_sim
+
+$program keys --markdown > docs/configuration.md
+rm -f config/schema/*.schema.json
+mkdir -p config/schema
+sed -n 's/^- \[\([a-z_]*\)\](#.*): .*/\1/p' docs/configuration.md | grep -v '^tables$' | while read -r kind; do
+  $program keys --json-schema "$kind" > "config/schema/$kind.schema.json"
+done
+tools/ros_interface.py > docs/ros_interface.md
