@@ -55,6 +55,8 @@ forbid '(ros|rosbag|std_msgs|train_brake_msgs|train_results|train_run|train_sim|
 forbid '(ros/ros|ros/node_handle|ros/publisher|train_run|train_sim|ltd_master|wagon_node)' \
   'results are written and read without a running graph' train_results
 forbid '(ros|strict_config|train_(brake_msgs|dynamics|node|results|run|sim)|ltd_master|wagon_node)/' 'train_console knows nothing of the rest' train_console
+forbid '(train_(brake_msgs|dynamics|results|run|sim)|ltd_master|wagon_node)/' \
+  'train_node is what all nodes need, whatever they do' train_node
 forbid '(ros/ros|train_sim|ltd_master|wagon_node)' 'a run knows neither its program nor a running graph' train_run
 forbid '(ros/ros|ltd_master|wagon_node)' 'train_sim runs without a graph' train_sim
 forbid '(ros|tf2_ros|rviz|Q[A-Z]|[a-z_]+_msgs/)' 'what is drawn (board/) knows nothing of ROS, messages or windows' \

@@ -56,8 +56,10 @@ def print_page(program):
         for pairs in of_command.values():
             entries(pair for pair in pairs if not pair[0].startswith("-h,"))
     print(f".SH EXIT STATUS\n{escaped(' '.join(exit_codes.split()))}")
-    print(".SH ENVIRONMENT\n.TP\n.B TRAIN_BRAKE_CONFIG\nfolders of parts, separated by colons, in which names are looked "
-          "for\nbesides the folders above a scenario")
+    print(
+        ".SH ENVIRONMENT\n.TP\n.B TRAIN_BRAKE_CONFIG\nfolders of parts, separated by colons, in which names are looked "
+        "for\nbesides the folders above a scenario"
+    )
     lines = "\n".join(line.strip() for line in examples.strip().splitlines())
     print(f".SH EXAMPLES\n.nf\n{escaped(lines)}\n.fi")
 

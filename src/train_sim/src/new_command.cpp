@@ -40,7 +40,7 @@ commands:
 initial_speed_kmh: 60
 start_position_m: 3000             # of the first vehicle
 initial_slack: stretched
-duration_s: 120
+duration_s: 300
 until: {standing: true}
 )"},
     {"trains/mine.yaml", "train",

@@ -23,8 +23,9 @@ RENEW = "renew it: make reference"
 
 
 def train_sim(*arguments):
-    return subprocess.run([TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          timeout=300)
+    return subprocess.run(
+        [TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300
+    )
 
 
 def keys(*arguments):
@@ -38,16 +39,28 @@ class Yaml12(yaml.SafeLoader):
 
 
 Yaml12.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag not in ("tag:yaml.org,2002:bool", "tag:yaml.org,2002:float")]
+    first: [
+        (tag, pattern) for tag, pattern in resolvers if tag not in ("tag:yaml.org,2002:bool", "tag:yaml.org,2002:float")
+    ]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
 Yaml12.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile("^(?:true|false)$"), list("tf"))
 Yaml12.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?$"), list("-+.0123456789"))
+    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?$"), list("-+.0123456789")
+)
 
 
-KINDS = {"scenario": "scenarios", "train": "trains", "vehicle": "vehicles", "coupler": "couplers", "brake": "brakes",
-         "traction": "traction", "track": "tracks", "adhesion": "adhesion", "slide_protection": "slide_protection"}
+KINDS = {
+    "scenario": "scenarios",
+    "train": "trains",
+    "vehicle": "vehicles",
+    "coupler": "couplers",
+    "brake": "brakes",
+    "traction": "traction",
+    "track": "tracks",
+    "adhesion": "adhesion",
+    "slide_protection": "slide_protection",
+}
 
 
 def errors(kind, text):
@@ -56,8 +69,10 @@ def errors(kind, text):
     schema = json.loads((folder / f"{kind}.schema.json").read_text())
     resolver = jsonschema.RefResolver(f"{folder.as_uri()}/{kind}.schema.json", schema)
     validator = jsonschema.Draft7Validator(schema, resolver=resolver)
-    return [f"{'.'.join(map(str, error.absolute_path))}: {error.message}"
-            for error in validator.iter_errors(yaml.load(text, Yaml12))]
+    return [
+        f"{'.'.join(map(str, error.absolute_path))}: {error.message}"
+        for error in validator.iter_errors(yaml.load(text, Yaml12))
+    ]
 
 
 def text_of(kind, name):
@@ -85,11 +100,17 @@ class Reference(unittest.TestCase):
         folders = set(re.findall(r"^Files in `(\w+)/`", page, re.M))
         kinds = re.findall(r"^- \[(\w+)\]\(#\w+\)", page, re.M)[:-1]
         self.assertLessEqual(set(KINDS.values()), folders)
-        self.assertEqual(sorted(f"{kind}.schema.json" for kind in kinds),
-                         sorted(path.name for path in (CONFIG / "schema").iterdir()), RENEW)
+        self.assertEqual(
+            sorted(f"{kind}.schema.json" for kind in kinds),
+            sorted(path.name for path in (CONFIG / "schema").iterdir()),
+            RENEW,
+        )
         for kind in kinds:
-            self.assertEqual(keys("--json-schema", kind), (CONFIG / "schema" / f"{kind}.schema.json").read_text(),
-                             f"config/schema/{kind}.schema.json is stale; {RENEW}")
+            self.assertEqual(
+                keys("--json-schema", kind),
+                (CONFIG / "schema" / f"{kind}.schema.json").read_text(),
+                f"config/schema/{kind}.schema.json is stale; {RENEW}",
+            )
 
     def test_a_path_is_that_of_a_file_of_a_setting_or_its_end(self):
         whole = keys("coupler.draft_gear.slack_m")

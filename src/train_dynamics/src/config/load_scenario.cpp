@@ -17,6 +17,7 @@
 #include "strict_config/writer.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/contact/kalker.h"
+#include "train_dynamics/train/scenario_warnings.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
 
 namespace train_dynamics::config {

@@ -62,4 +62,16 @@ std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverC
   return timed;
 }
 
+std::string RenumberedCommands(const std::string& text, const std::vector<std::size_t>& index) {
+  const std::string list = "commands[";
+  std::string renumbered;
+  std::size_t at = 0;
+  for (std::size_t found; (found = text.find(list, at)) != std::string::npos;) {
+    const std::size_t number = found + list.size(), end = text.find(']', number);
+    renumbered += text.substr(at, number - at) + std::to_string(index.at(std::stoul(text.substr(number))));
+    at = end;
+  }
+  return renumbered + text.substr(at);
+}
+
 }  // namespace train_dynamics

@@ -98,6 +98,10 @@ std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, con
 /// @param index  of each in the list; null: not wanted
 std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
                                              std::vector<std::size_t>* index = nullptr);
+
+/// A text that speaks of commands[k], where k counts those of the brake, with the numbers of the whole list.
+/// @param index  of each in the list, as TimedBrakeCommands gives it
+std::string RenumberedCommands(const std::string& text, const std::vector<std::size_t>& index);
 /// Those with a time, for the locomotives, in the order of the list.
 std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverCommand>& commands);
 
