@@ -167,6 +167,13 @@ class DistributedTrain(unittest.TestCase):
                 self.assert_complete(self.launch(f"nodes:={nodes}", f"set:={mixed}"), expected)
         self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
 
+    def test_the_pneumatic_brake_is_the_same_from_every_mapping(self):
+        expected = train_sim("--set", "brake=ab_head_end")
+        for nodes in 1, 3, 6:
+            with self.subTest(nodes=nodes):
+                self.assert_complete(self.launch(f"nodes:={nodes}", "set:=brake=ab_head_end"), expected)
+        self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
+
     def test_ltd_runs_in_the_master_alone(self):
         expected = train_sim("--model", "ltd")
         launch = self.launch("model:=ltd")

@@ -18,6 +18,9 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
   const std::vector<BrokenRule> broken =
       command.IsOfLocomotives()
           ? train_dynamics::JudgeLocomotiveCommand(command.OfLocomotives(0.0), "command", scenario.train)
+      : command.IsOfLocomotiveBrakes()
+          ? train_dynamics::JudgeLocomotiveBrakeCommand(command.OfLocomotiveBrakes(0.0), "command",
+                                                        scenario.train, *scenario.brake)
           : scenario.brake->BrokenRules({command.OfBrake(0.0)}, scenario.train.VehicleCount());
   if (broken.empty()) return "";
   const std::string& key = broken.front().key;  // "commands[0].reduction_kpa", "command.notch"

@@ -105,6 +105,33 @@ void AirBrakePressure(benchmark::State& state) {
   ShowTimePerVehicleStep(state, kVehicles);
 }
 
+/// The pneumatic brake of the paper's train, AB valves, sources at 1 and 122 and an End-of-Train device, asked for its
+/// pressures at every exchange. An emergency's first 20 s, or a service application, a release and its recharge, 120 s.
+void PneumaticBrakePressure(benchmark::State& state, bool emergency) {
+  const std::vector<std::string> overrides = {
+      "brake=ab_distributed", emergency
+                                  ? "commands=[{time_s: 0, kind: emergency}]"
+                                  : "commands=[{time_s: 0, kind: apply, reduction_kpa: 100}, {time_s: 60, "
+                                    "kind: release}]"};
+  const double end_s = emergency ? 20.0 : 120.0;
+  const config::LoadedScenario scenario = Emergency(overrides);
+  std::vector<double> pressure_pa;
+  BrakeSystem brake = scenario.pressures;
+  double time_s = 0.0;
+  for (auto _ : state) {
+    if (time_s > end_s) {
+      state.PauseTiming();
+      brake = scenario.pressures;
+      time_s = 0.0;
+      state.ResumeTiming();
+    }
+    brake.PressuresAt(time_s, pressure_pa);
+    benchmark::DoNotOptimize(pressure_pa.data());
+    time_s += kTimeStep;
+  }
+  ShowTimePerVehicleStep(state, kVehicles);
+}
+
 /// @param with_ledger  the energies of every vehicle and their sums, too
 void Report(benchmark::State& state, const std::string& model, bool with_ledger) {
   const config::LoadedScenario scenario = Emergency({"model=" + model});
@@ -125,6 +152,8 @@ int main(int argc, char** argv) {
   using namespace train_dynamics::bench;
   benchmark::RegisterBenchmark("couplers", Couplers);
   benchmark::RegisterBenchmark("air_brake", AirBrakePressure);
+  benchmark::RegisterBenchmark("pneumatic_brake/emergency", PneumaticBrakePressure, true);
+  benchmark::RegisterBenchmark("pneumatic_brake/service", PneumaticBrakePressure, false);
   for (const std::string model : {"2d", "ltd"}) {
     benchmark::RegisterBenchmark(("record/" + model).c_str(), Report, model, false);
     benchmark::RegisterBenchmark(("record_with_ledger/" + model).c_str(), Report, model, true);

@@ -107,6 +107,8 @@ void Convert(const train_dynamics::GivenCommand& given, double time_s,
   const bool applies = given.command.kind == train_dynamics::DriverCommandKind::kApply;
   message.command.reduction_kpa = applies ? given.command.reduction_kpa : 0.0;
   message.command.notch = given.command.IsOfLocomotives() ? given.command.notch : 0.0;
+  const bool is_independent = given.command.kind == train_dynamics::DriverCommandKind::kIndependentBrake;
+  message.command.pressure_kpa = is_independent ? given.command.pressure_kpa : 0.0;
   message.command.vehicles.assign(given.command.vehicles.begin(), given.command.vehicles.end());
   message.live = given.is_live;
 }
@@ -169,8 +171,13 @@ train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& m
     if (!(std::isfinite(message.notch) && message.notch >= 0.0))
       throw std::invalid_argument(fmt::format("notch must be >= 0, got {}", message.notch));
     command.notch = message.notch;
-    command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
   }
+  if (command.kind == train_dynamics::DriverCommandKind::kIndependentBrake) {
+    if (!(std::isfinite(message.pressure_kpa) && message.pressure_kpa >= 0.0))
+      throw std::invalid_argument(fmt::format("pressure_kpa must be >= 0, got {}", message.pressure_kpa));
+    command.pressure_kpa = message.pressure_kpa;
+  }
+  if (!command.IsOfTrainBrake()) command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
   return command;
 }
 

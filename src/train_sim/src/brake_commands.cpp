@@ -8,6 +8,7 @@
 
 #include "train_console/console.h"
 #include "train_dynamics/brake/pneumatic/air_test.h"
+#include "train_dynamics/brake/pneumatic/emergency_search.h"
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/braked_weight.h"
 #include "train_dynamics/train/in_process_train.h"
@@ -35,6 +36,33 @@ std::vector<double> Lengths(const Consist& consist) {
   std::vector<double> length_m;
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   return length_m;
+}
+
+/// Random service commands at several cell counts: a line of the table for each, and what led to an emergency.
+void Search(const train_dynamics::PneumaticBrakeParams& brake, const std::vector<double>& length_m,
+            int trials, std::uint32_t seed, std::vector<train_dynamics::AirTestResult>& results,
+            std::string& undesired) {
+  for (const int cells : {1, 2, 4, 8}) {
+    train_dynamics::EmergencySearch search;
+    search.trials = trials;
+    search.seed = seed;
+    search.cells_per_vehicle = cells;
+    const auto found = train_dynamics::FindUndesiredEmergencies(brake, length_m, search);
+    results.push_back({fmt::format("random service commands, {} cell(s): emergencies", cells),
+                       static_cast<double>(found.size()), fmt::format("of {}", trials), "none [A]",
+                       found.empty()});
+    for (const train_dynamics::UndesiredEmergency& e : found) {
+      undesired +=
+          fmt::format("\n{} cell(s), trial {}: vehicle {} at {:.2f} s, pipe at first {:.1f} kPa, after",
+                      cells, e.trial, e.vehicle, e.time_s, e.initial_pressure_kpa);
+      for (const train_dynamics::BrakeCommand& c : e.commands) {
+        undesired += c.kind == train_dynamics::BrakeCommandKind::kApply
+                         ? fmt::format(" {:.3f} s: {:.3f} kPa,", c.time_s, c.reduction_kpa)
+                         : fmt::format(" {:.3f} s: release,", c.time_s);
+      }
+      undesired.back() = '\n';
+    }
+  }
 }
 
 /// Distance [m] of the train's middle from the emergency's command to its stop, on level track.
@@ -86,11 +114,14 @@ ScenarioParams Alone(ScenarioParams params) {
 
 }  // namespace
 
-int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides) {
+int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides, int trials,
+                 std::uint32_t seed) {
   const LoadedScenario loaded = LoadWithPneumaticBrake(scenario_file, overrides);
   const std::vector<double> length_m = Lengths(loaded.consist);
   for (const std::string& warning : loaded.warnings) train_console::Tell("warning: {}\n", warning);
-  const auto results = train_dynamics::TestAirBrake(loaded.params.brake->pneumatic, length_m);
+  auto results = train_dynamics::TestAirBrake(loaded.params.brake->pneumatic, length_m);
+  std::string undesired;
+  if (trials > 0) Search(loaded.params.brake->pneumatic, length_m, trials, seed, results, undesired);
   train_console::Print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n",
                        loaded.params.brake->name, length_m.size(), "test", "value", "", "rule", "");
   int failed = 0;
@@ -100,6 +131,7 @@ int PrintAirTest(const std::string& scenario_file, const std::vector<std::string
                          r.passed ? "passed" : "FAILED");
     failed += !r.passed;
   }
+  train_console::Print("{}", undesired);
   train_console::Print("\n{} of {} passed\n", results.size() - failed, results.size());
   return failed == 0 ? train_run::kSuccess : train_run::kFailure;
 }

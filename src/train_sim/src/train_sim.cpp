@@ -203,7 +203,17 @@ int Main(int argc, char** argv) {
   CLI::App* air_test = app.add_subcommand(
       "air-test", "test the pneumatic brake of a scenario's train at rest; 1 if a test fails");
   AddInput(air_test, "SCENARIO", "scenario file", vehicle, options.overrides);
-  air_test->callback([&] { command = [&] { return train_sim::PrintAirTest(vehicle, options.overrides); }; });
+  int trials = 0;
+  std::uint32_t seed = 1;
+  air_test
+      ->add_option("--trials", trials,
+                   "random sequences of service commands, too, at each of 1, 2, 4 and 8 cells per vehicle: "
+                   "no valve may "
+                   "go into emergency")
+      ->check(CLI::Range(0, 1000000));
+  air_test->add_option("--seed", seed, "of the random sequences")->capture_default_str();
+  air_test->callback(
+      [&] { command = [&] { return train_sim::PrintAirTest(vehicle, options.overrides, trials, seed); }; });
 
   CLI::App* brake_weight = app.add_subcommand(
       "brake-weight",

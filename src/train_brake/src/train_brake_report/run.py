@@ -165,7 +165,7 @@ class Run:
             kind, *value = given["command"].split()
             command = {"time_s": given["time_s"], "kind": kind}
             if value:
-                command["reduction_kpa" if kind == "apply" else "notch"] = float(value[0])
+                command[{"apply": "reduction_kpa", "independent_brake": "pressure_kpa"}.get(kind, "notch")] = float(value[0])
             timed.append(command)
         return sorted(timed, key=lambda command: command["time_s"])
 

@@ -104,6 +104,8 @@ def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = Fa
             kind = command["kind"].replace("_", " ")
             if kind == "apply":
                 kind = f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa"
+            elif "pressure_kpa" in command:
+                kind += f" {command['pressure_kpa']:g} kPa"
             elif "notch" in command:
                 kind += f" {command['notch']:g}"
             axes.annotate(kind, (command["time_s"], y), (4, offset), xycoords=("data", "axes fraction"),

@@ -121,6 +121,7 @@ std::vector<double> CommandSchedule::Memory() const {
     memory(static_cast<double>(given.command.kind));
     memory(given.command.reduction_kpa);
     memory(given.command.notch);
+    memory(given.command.pressure_kpa);
     memory(static_cast<double>(given.command.vehicles.size()));
     for (int vehicle : given.command.vehicles) memory(vehicle);
   }
@@ -143,6 +144,7 @@ void CommandSchedule::SetMemory(const std::vector<double>& memory) {
     given.command.kind = static_cast<DriverCommandKind>(static_cast<int>(next()));
     given.command.reduction_kpa = next();
     given.command.notch = next();
+    given.command.pressure_kpa = next();
     given.command.exchange = static_cast<double>(given.exchange);
     for (double vehicles = next(); vehicles > 0.0; vehicles -= 1.0)
       given.command.vehicles.push_back(static_cast<int>(next()));

@@ -23,9 +23,17 @@ LocomotiveCommand DriverCommand::OfLocomotives(double at_s) const {
   return {at_s, of_locomotives, notch, vehicles};
 }
 
+LocomotiveBrakeCommand DriverCommand::OfLocomotiveBrakes(double at_s) const {
+  return kind == DriverCommandKind::kBailOff
+             ? LocomotiveBrakeCommand{at_s, LocomotiveBrakeCommandKind::kBailOff, 0.0, vehicles}
+             : LocomotiveBrakeCommand{at_s, LocomotiveBrakeCommandKind::kIndependent, pressure_kpa, vehicles};
+}
+
 std::string DriverCommand::Text() const {
   const std::string name = NameOf(kind);
   if (kind == DriverCommandKind::kApply) return name + " " + ShortestDecimal(reduction_kpa) + " kPa";
+  if (kind == DriverCommandKind::kIndependentBrake)
+    return name + " " + ShortestDecimal(pressure_kpa) + " kPa";
   return IsOfLocomotives() ? name + " " + ShortestDecimal(notch) : name;
 }
 
@@ -47,7 +55,7 @@ std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& c
                                              std::vector<std::size_t>* index) {
   std::vector<BrakeCommand> timed;
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (commands[i].IsOfLocomotives() || !commands[i].time_s) continue;
+    if (!commands[i].IsOfTrainBrake() || !commands[i].time_s) continue;
     timed.push_back(commands[i].OfBrake(*commands[i].time_s));
     if (index != nullptr) index->push_back(i);
   }
@@ -72,6 +80,15 @@ std::string RenumberedCommands(const std::string& text, const std::vector<std::s
     at = end;
   }
   return renumbered + text.substr(at);
+}
+
+std::vector<LocomotiveBrakeCommand> TimedLocomotiveBrakeCommands(const std::vector<DriverCommand>& commands) {
+  std::vector<LocomotiveBrakeCommand> timed;
+  for (const DriverCommand& command : commands) {
+    if (command.IsOfLocomotiveBrakes() && command.time_s)
+      timed.push_back(command.OfLocomotiveBrakes(*command.time_s));
+  }
+  return timed;
 }
 
 }  // namespace train_dynamics

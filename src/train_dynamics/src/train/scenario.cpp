@@ -146,7 +146,7 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   JudgeSlideProtection(broken);
   const std::vector<DriverCommand> named = WithVehicles(commands, train);
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (!commands[i].IsOfLocomotives()) continue;
+    if (commands[i].IsOfTrainBrake()) continue;
     if (!named[i].group.empty()) {
       broken.push_back(
           {"commands" + ListIndex(i) + ".group",
@@ -154,6 +154,12 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
            {"train"}});
       continue;
     }
+    if (commands[i].IsOfLocomotiveBrakes() && brake) {
+      for (const BrokenRule& rule : JudgeLocomotiveBrakeCommand(named[i].OfLocomotiveBrakes(0.0),
+                                                                "commands" + ListIndex(i), train, *brake))
+        broken.push_back(rule);
+    }
+    if (!commands[i].IsOfLocomotives()) continue;
     for (const BrokenRule& rule :
          JudgeLocomotiveCommand(named[i].OfLocomotives(0.0), "commands" + ListIndex(i), train))
       broken.push_back(rule);
@@ -203,7 +209,7 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
   const std::vector<BrakeCommand> timed = TimedBrakeCommands(commands, &index);
   judge(timed, index);
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (!commands[i].time_s && !commands[i].IsOfLocomotives()) judge({commands[i].OfBrake(0.0)}, {i});
+    if (!commands[i].time_s && commands[i].IsOfTrainBrake()) judge({commands[i].OfBrake(0.0)}, {i});
   }
 }
 
@@ -338,17 +344,30 @@ BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consi
   std::vector<double> length_m;
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   const PressureGrid grid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()};
+  const auto brake_with = [&](const std::vector<BrakeCommand>& commands) {
+    return BrakeSystem(*scenario.brake, commands, consist.centre_m, grid, length_m);
+  };
   const std::vector<BrakeCommand> timed = TimedBrakeCommands(scenario.commands);
-  if (scenario.initial_reduction_kpa == 0.0)
-    return {*scenario.brake, timed, consist.centre_m, grid, length_m};
-  constexpr double kSettle_s = 120.0;
-  BrakeSystem applied(*scenario.brake, {{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}},
-                      consist.centre_m, grid, length_m);
-  std::vector<double> pressure_pa;
-  applied.PressuresAt(kSettle_s, pressure_pa);
-  applied.MoveAhead(kSettle_s);
-  for (const BrakeCommand& command : timed) applied.Command(command);
-  return applied;
+  const bool is_applied = scenario.initial_reduction_kpa > 0.0;
+  BrakeSystem brake = is_applied
+                          ? brake_with({{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}})
+                          : brake_with(timed);
+  if (is_applied) {
+    constexpr double kSettle_s = 120.0;
+    std::vector<double> pressure_pa;
+    brake.PressuresAt(kSettle_s, pressure_pa);
+    brake.MoveAhead(kSettle_s);
+    for (const BrakeCommand& command : timed) brake.Command(command);
+  }
+  std::vector<LocomotiveBrakes::Locomotive> locomotives;
+  for (int i : consist.locomotives)
+    locomotives.push_back({i, consist.command_delay_s[consist.vehicle_type[i]]});
+  brake.SetLocomotiveBrakes(
+      LocomotiveBrakes(scenario.brake->locomotive_brake, locomotives, consist.vehicles()));
+  for (const LocomotiveBrakeCommand& command :
+       TimedLocomotiveBrakeCommands(WithVehicles(scenario.commands, scenario.train)))
+    brake.Command(command);
+  return brake;
 }
 
 }  // namespace train_dynamics

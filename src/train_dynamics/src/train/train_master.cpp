@@ -117,6 +117,7 @@ void TrainMaster::Exchange() {
   forces_.Evaluate(middle_s, reply_.head_velocity_mps, request_.coupler_force_n);
   if (can_part_) OpenPipes();
   if (!schedule_.IsDone() || DriverIsDue()) GiveCommands();
+  if (brake_.locomotives().blends()) Blend();
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
   locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
 
@@ -143,6 +144,15 @@ void TrainMaster::Exchange() {
   if (request_.record) ShowRecord();
 }
 
+void TrainMaster::Blend() {
+  LocomotiveBrakes& brakes = brake_.locomotives();
+  std::size_t brake = 0;
+  for (std::size_t i = 0; i < locomotives_.size(); ++i) {
+    while (brakes.vehicle(brake) != locomotives_.vehicle(i)) ++brake;  // some locomotives have no drive
+    brakes.SetDynamicBrake(brake, Max(0.0, -locomotives_.drive(i).effort_n));
+  }
+}
+
 void TrainMaster::OpenPipes() {
   const std::vector<Parting> partings = forces_.Partings();
   for (; opened_pipes_ < partings.size(); ++opened_pipes_) {
@@ -151,8 +161,7 @@ void TrainMaster::OpenPipes() {
 }
 
 void TrainMaster::Command(const DriverCommand& command) {
-  if (!command.IsOfLocomotives())
-    BrakeSystem(brake_).Command(command.OfBrake(time_s()));  // of a copy: may it?
+  if (command.IsOfTrainBrake()) BrakeSystem(brake_).Command(command.OfBrake(time_s()));  // of a copy: may it?
   schedule_.Add(command);
 }
 
@@ -214,6 +223,8 @@ void TrainMaster::Give(const GivenCommand& given) {
   const double at_s = static_cast<double>(given.exchange) * scenario_.exchange_interval_s;
   if (given.command.IsOfLocomotives()) {
     locomotives_.Command(given.command.OfLocomotives(at_s));
+  } else if (given.command.IsOfLocomotiveBrakes()) {
+    brake_.Command(given.command.OfLocomotiveBrakes(at_s));
   } else {
     brake_.Command(given.command.OfBrake(at_s));
   }

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace train_sim {
 
 /// Prints the tests of a scenario's pneumatic brake (brake/pneumatic/air_test.h), one table with the rule of each.
+/// @param trials  of random service commands at each of 1, 2, 4 and 8 cells per vehicle, from which no valve may go into
+///                emergency (brake/pneumatic/emergency_search.h); 0: none
 /// @return kSuccess; kFailure if one fails
 /// @throws strict_config::Error, std::invalid_argument if its brake is not pneumatic
-int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides);
+int PrintAirTest(const std::string& scenario_file, const std::vector<std::string>& overrides, int trials,
+                 std::uint32_t seed);
 
 /// Prints the braked-weight percentage of a scenario's vehicles and how its train stops beside the model of ETCS:
 ///

@@ -26,6 +26,17 @@ def _built_up(time_s: numpy.ndarray, mean: numpy.ndarray) -> str:
     return f"from the first cylinder's to {100 * FULL:g} % of the largest mean {time_s[end] - time_s[begin]:.1f} s"
 
 
+def _charged(time_s: numpy.ndarray, head_pa: numpy.ndarray, tail_pa: numpy.ndarray) -> str:
+    """How long the charging of an empty train takes; nothing of a train that is charged from the start."""
+    goal = FULL * float(head_pa.max())
+    if tail_pa[0] >= goal or tail_pa[0] > tail_pa[1:].min(initial=numpy.inf):
+        return ""
+    if not (tail_pa >= goal).any():
+        return f" The last vehicle's pipe is not charged to {100 * FULL:g} % of the first's within the run."
+    return (f" Charging: the last vehicle's pipe has {100 * FULL:g} % of the first's largest pressure after "
+            f"{time_s[(tail_pa >= goal).argmax()] - time_s[0]:.1f} s.")
+
+
 def draw(group: Group) -> Figure:
     runs, not_shown = group.drawable(_why_not)
     run = runs[0]
@@ -53,5 +64,6 @@ def draw(group: Group) -> Figure:
     if len(with_cylinders) > 1:
         below.legend()
     caption = (f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all cylinders, "
-               "to which the brake force is proportional. Build-up: " + "; ".join(told) + ".")
+               "to which the brake force is proportional. Build-up: " + "; ".join(told) + "."
+               + _charged(table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1]))
     return Figure("air_brake", "Air in the brake", caption + not_shown, canvas)

@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "train_dynamics/brake/air_brake.h"
 #include "train_dynamics/brake/brake_command.h"
 #include "train_dynamics/brake/brake_pressures.h"
+#include "train_dynamics/brake/locomotive_brakes.h"
 #include "train_dynamics/brake/pneumatic/pneumatic_brake.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/judgement.h"
@@ -22,6 +24,7 @@ struct BrakeSystemParams {
   BrakeSystemKind kind = BrakeSystemKind::kEmpirical;
   AirBrakeParams empirical;
   PneumaticBrakeParams pneumatic;
+  LocomotiveBrakeParams locomotive_brake;  ///< of either kind
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -32,6 +35,7 @@ struct BrakeSystemParams {
              "and cylinders");
     if (kind == BrakeSystemKind::kEmpirical) empirical.Visit(v);
     if (kind == BrakeSystemKind::kPneumatic) pneumatic.Visit(v);
+    v.Group("locomotive_brake", locomotive_brake, "brakes of the locomotives besides that of the train");
   }
 
   /// What these commands break in a train of so many vehicles.
@@ -53,6 +57,7 @@ struct PressureGrid {
 /// The brake of a train, one of a closed set of systems, chosen once per train. Each has
 ///
 ///   Command(command)                   the driver does this, now or later; the other commands stay
+///   BailOff(vehicle, from_s, to_s)     of pneumatic brakes: see there
 ///   OpenPipe(time_s, connection)       the brake pipe parts there: an emergency from both sides
 ///   PressuresAt(time_s, pressure_pa)   cylinder pressure of each vehicle [Pa]; times ascend
 ///   ForEachField(function)             calls function(number) for each number of its state
@@ -70,14 +75,26 @@ class BrakeSystem {
               const std::vector<double>& vehicle_positions_m, const PressureGrid& grid,
               const std::vector<double>& vehicle_length_m = {});
 
+  /// The brakes of locomotives beside the system's: what acts in their cylinders.
+  void SetLocomotiveBrakes(LocomotiveBrakes locomotives) { locomotives_ = std::move(locomotives); }
+  LocomotiveBrakes& locomotives() { return locomotives_; }
+
   /// Resizes `pressure_pa`.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
     std::visit([&](auto& system) { system.PressuresAt(time_s + ahead_s_, pressure_pa); }, system_);
+    locomotives_.Act(time_s + ahead_s_, pressure_pa);
   }
   /// @throws std::invalid_argument if the system cannot obey
   void Command(BrakeCommand command) {
     command.time_s += ahead_s_;
     std::visit([&](auto& system) { system.Command(command); }, system_);
+  }
+  void Command(LocomotiveBrakeCommand command) {
+    command.time_s += ahead_s_;
+    for (const LocomotiveBrakes::BailOff& bail_off : locomotives_.Command(command)) {
+      if (auto* machine = std::get_if<PneumaticBrake>(&system_))
+        machine->BailOff(bail_off.vehicle, bail_off.from_s, bail_off.to_s);
+    }
   }
   void OpenPipe(double time_s, int connection) {
     std::visit([&](auto& system) { system.OpenPipe(time_s + ahead_s_, connection); }, system_);
@@ -95,6 +112,7 @@ class BrakeSystem {
 
  private:
   System system_;
+  LocomotiveBrakes locomotives_;
   double ahead_s_ = 0.0;
 };
 

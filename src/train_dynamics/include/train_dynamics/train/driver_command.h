@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_command.h"
+#include "train_dynamics/brake/locomotive_brakes.h"
 #include "train_dynamics/parameters.h"
 #include "train_dynamics/train/locomotive_command.h"
 
@@ -33,14 +34,24 @@ struct ConditionParams {
   }
 };
 
-enum class DriverCommandKind { kApply, kEmergency, kRelease, kThrottle, kDynamicBrake };
+enum class DriverCommandKind {
+  kApply,
+  kEmergency,
+  kRelease,
+  kThrottle,
+  kDynamicBrake,
+  kIndependentBrake,
+  kBailOff
+};
 
 inline constexpr std::initializer_list<std::pair<const char*, DriverCommandKind>> kDriverCommandKinds = {
     {"apply", DriverCommandKind::kApply},
     {"emergency", DriverCommandKind::kEmergency},
     {"release", DriverCommandKind::kRelease},
     {"throttle", DriverCommandKind::kThrottle},
-    {"dynamic_brake", DriverCommandKind::kDynamicBrake}};
+    {"dynamic_brake", DriverCommandKind::kDynamicBrake},
+    {"independent_brake", DriverCommandKind::kIndependentBrake},
+    {"bail_off", DriverCommandKind::kBailOff}};
 
 const char* NameOf(DriverCommandKind kind);
 
@@ -50,6 +61,7 @@ struct DriverCommand {
   DriverCommandKind kind = DriverCommandKind::kApply;
   double reduction_kpa = kRequired;
   double notch = kRequired;
+  double pressure_kpa = kRequired;
   std::vector<int> vehicles;
   std::string group;
   std::optional<ConditionParams> when;
@@ -63,12 +75,18 @@ struct DriverCommand {
         "exchange", exchange, Range{0.0, 1e12, false, false},
         "number of the exchange at whose start it is given: of commands that were given to a running train");
     v.Choice("kind", kind, kDriverCommandKinds,
-             "apply, emergency, release: the brake; throttle, dynamic_brake: locomotives");
+             "apply, emergency, release: the brake of the train; throttle, dynamic_brake, independent_brake, "
+             "bail_off: "
+             "locomotives");
     if (kind == DriverCommandKind::kApply)
       v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
-    if (IsOfLocomotives()) {
+    if (IsOfLocomotives())
       v.Number("notch", notch, Range{0.0, 100.0, false, false},
                "of throttle or dynamic brake; 0: off; each ends what the other has asked for");
+    if (kind == DriverCommandKind::kIndependentBrake)
+      v.Number("pressure_kpa", pressure_kpa, kNonNegative,
+               "of the locomotives' cylinders by their own brake; 0: released");
+    if (!IsOfTrainBrake()) {
       v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
                  "locomotives that obey, from 1, or from -1 for the last; none: all, or those of group");
       v.Text("group", group,
@@ -81,20 +99,28 @@ struct DriverCommand {
             {"when", "exchange"});
   }
 
+  /// Throttle and dynamic brake.
   bool IsOfLocomotives() const {
     return kind == DriverCommandKind::kThrottle || kind == DriverCommandKind::kDynamicBrake;
   }
-  /// The same for the brake, given at a time. Only of a command that is not of locomotives.
+  /// Of the locomotives' own brakes.
+  bool IsOfLocomotiveBrakes() const {
+    return kind == DriverCommandKind::kIndependentBrake || kind == DriverCommandKind::kBailOff;
+  }
+  bool IsOfTrainBrake() const { return !IsOfLocomotives() && !IsOfLocomotiveBrakes(); }
+  /// The same for the train's brake, given at a time. Only of a command of it.
   BrakeCommand OfBrake(double at_s) const;
   /// The same for the locomotives, given at a time. Only of a command of locomotives.
   LocomotiveCommand OfLocomotives(double at_s) const;
+  /// The same for the locomotives' own brakes, given at a time. Only of a command of them.
+  LocomotiveBrakeCommand OfLocomotiveBrakes(double at_s) const;
   /// As "apply 50 kPa" or "throttle 8".
   std::string Text() const;
 };
 
 /// The same commands with the numbers of the locomotives of their group, where they name one that has some.
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train);
-/// Those with a time, for the brake, in the order of the list.
+/// Those with a time, for the train's brake, in the order of the list.
 /// @param index  of each in the list; null: not wanted
 std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
                                              std::vector<std::size_t>* index = nullptr);
@@ -104,5 +130,7 @@ std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& c
 std::string RenumberedCommands(const std::string& text, const std::vector<std::size_t>& index);
 /// Those with a time, for the locomotives, in the order of the list.
 std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverCommand>& commands);
+/// Those with a time, for the locomotives' own brakes, in the order of the list.
+std::vector<LocomotiveBrakeCommand> TimedLocomotiveBrakeCommands(const std::vector<DriverCommand>& commands);
 
 }  // namespace train_dynamics

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/judgement.h"
 #include "train_dynamics/traction/locomotive.h"
 #include "train_dynamics/train/consist.h"
@@ -40,5 +41,11 @@ struct LocomotiveCommand {
 /// @param key  of the command, such as "commands[2]"
 std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command, const std::string& key,
                                                const TrainParams& train);
+
+/// The same of a command of the locomotives' own brakes: each vehicle named is a locomotive, its brake gives the pressure,
+/// and a bail-off has cylinders to empty.
+std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand& command,
+                                                    const std::string& key, const TrainParams& train,
+                                                    const BrakeSystemParams& brake);
 
 }  // namespace train_dynamics

@@ -108,6 +108,8 @@ class TrainMaster {
     BuiltInDriverState state;
   };
   bool DriverIsDue() const { return driver_ && exchange_ % driver_->period == 0; }
+  /// Tells the brakes of locomotives what their dynamic brakes did over the last exchange.
+  void Blend();
   void GiveCommands();
   void Give(const GivenCommand& given);
 

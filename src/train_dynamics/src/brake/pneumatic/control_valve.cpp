@@ -91,6 +91,17 @@ double ControlValve::Step(const TrainLine& line, Retainer retainer, ControlValve
   return out;
 }
 
+double ControlValve::BailOff(ControlValveState& s, double pipe_pa) const {
+  if (p_.kind == ControlValveKind::kGraduatedRelease) {
+    s.quick_action_pa = Min(s.quick_action_pa, pipe_pa);
+    return 0.0;
+  }
+  if (p_.kind == ControlValveKind::kDirectRelease && s.Mode() != ControlValveMode::kRelease &&
+      s.Mode() != ControlValveMode::kEmergency)
+    s.SetMode(ControlValveMode::kBailedOff);
+  return PassToPlace(exhaust_, dt_s_, s.cylinder_pa, cylinder_m3_, kAtmospherePa);
+}
+
 double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double& pipe_pa,
                                 double pipe_m3) const {
   const DirectReleaseParams& d = p_.direct;
@@ -131,6 +142,7 @@ double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double&
       }
       break;
     case ControlValveMode::kLap:
+    case ControlValveMode::kBailedOff:
       if (above < -d.release_kpa * 1e3) s.SetMode(ControlValveMode::kRelease);
       if (above > d.apply_kpa * 1e3) s.SetMode(ControlValveMode::kApply);
       break;
@@ -170,6 +182,9 @@ double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double&
         PassOneWay(limiting_, dt_s_, pipe_pa, pipe_m3, s.cylinder_pa, cylinder_m3_);
       break;
     }
+    case ControlValveMode::kBailedOff:
+      out += PassToPlace(exhaust_, dt_s_, s.cylinder_pa, cylinder_m3_, kAtmospherePa);
+      break;
     case ControlValveMode::kEmergency:
       Pass(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, s.cylinder_pa, cylinder_m3_);
       PassOneWay(emergency_, dt_s_, s.emergency_pa, emergency_m3_, s.cylinder_pa, cylinder_m3_);

@@ -274,7 +274,6 @@ PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
   }
   acting_pa_.assign(vehicles, 0.0);
   acting_before_pa_.assign(vehicles, 0.0);
-  independent_pa_.assign(vehicles, 0.0);
 }
 
 void PneumaticBrake::Send(SourceState& source, double now_s, double delay_s,
@@ -423,6 +422,11 @@ void PneumaticBrake::Step() {
     line.ecp_emergency = line.ep_emergency = line_.emergency == 1.0;
     line.ep_pipe_pa = kAtmospherePa + line_.equalising_pa;
   }
+  for (const HeldOff& held : bail_offs_) {
+    if (time_s() < held.from_s || time_s() >= held.to_s || cut_out_[held.vehicle]) continue;
+    released_pv_ +=
+        valves_[valve_of_[held.vehicle]].BailOff(states_[held.vehicle], pressure[valve_cell_[held.vehicle]]);
+  }
   std::swap(acting_pa_, acting_before_pa_);
   for (int i = 0; i < vehicles(); ++i) {
     ControlValveState& s = states_[i];
@@ -430,7 +434,7 @@ void PneumaticBrake::Step() {
     if (!cut_out_[i])
       released_pv_ +=
           valves_[valve_of_[i]].Step(line, retainer_[i], s, pressure[cell], grid_.volume_m3[cell]);
-    acting_pa_[i] = Max(independent_pa_[i], pressure_share_[i] * (s.cylinder_pa - kAtmospherePa));
+    acting_pa_[i] = pressure_share_[i] * (s.cylinder_pa - kAtmospherePa);
   }
   steps_ += 1.0;
 }

@@ -3,14 +3,14 @@
 #include <vector>
 
 /// What is recorded of each vehicle's brake beside its cylinder, where a brake computes it (else the arrays are empty).
-/// Pressures are above the atmosphere. A valve's mode is 0 release, 1 apply, 2 lap, 3 emergency.
+/// Pressures are above the atmosphere. A valve's mode is 0 release, 1 apply, 2 lap, 3 emergency, 4 bailed off.
 ///
 /// X(name, unit, meaning); from this list: the arrays below, tables of --csv, the message BrakePressures.
 #define TRAIN_DYNAMICS_BRAKE_RECORD(X)                                            \
   X(pipe_pressure_pa, "Pa", "brake pipe at the vehicle")                          \
   X(auxiliary_reservoir_pa, "Pa", "auxiliary reservoir")                          \
   X(emergency_reservoir_pa, "Pa", "emergency reservoir; NaN where there is none") \
-  X(valve_mode, "-", "control valve: 0 release, 1 apply, 2 lap, 3 emergency")
+  X(valve_mode, "-", "control valve: 0 release, 1 apply, 2 lap, 3 emergency, 4 bailed off")
 
 namespace train_dynamics {
 

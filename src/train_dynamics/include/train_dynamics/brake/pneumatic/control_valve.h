@@ -197,7 +197,13 @@ struct ControlValveParams {
 };
 
 /// What a valve does.
-enum class ControlValveMode { kRelease, kApply, kLap, kEmergency };
+enum class ControlValveMode {
+  kRelease,
+  kApply,
+  kLap,
+  kEmergency,
+  kBailedOff  ///< of direct release: lap, with the cylinder open to the atmosphere
+};
 
 /// The air of one vehicle's brake beside the pipe; pressures absolute.
 struct ControlValveState {
@@ -249,6 +255,14 @@ class ControlValve {
   /// @param pipe_pa  of the vehicle's cell, of volume pipe_m3; changed by what the valve takes or vents
   double Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa,
               double pipe_m3) const;
+
+  /// A step of a bail-off, before Step: a locomotive's brake is let go while that of the train stays applied. @return p V
+  /// let out to the atmosphere [J]
+  ///
+  /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills it
+  /// again when the handle is let go. Graduated release lets its control reservoir down to the pipe, and so lets go in its
+  /// release time. ECP empties the cylinder while the handle is held.
+  double BailOff(ControlValveState& s, double pipe_pa) const;
 
   /// p V of all air that the state holds [J].
   double PressureVolume(const ControlValveState& s) const;

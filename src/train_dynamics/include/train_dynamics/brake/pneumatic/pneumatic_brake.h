@@ -279,8 +279,8 @@ class PneumaticBrake {
   void Command(const BrakeCommand& command);
   /// The hose parts between vehicles `connection` and `connection` + 1, from 0. Again: nothing.
   void OpenPipe(double time_s, int connection);
-  /// Least pressure of a vehicle's cylinder, whatever the pipe does: a locomotive's independent brake, gauge.
-  void SetIndependent(int vehicle, double pressure_pa) { independent_pa_[vehicle] = pressure_pa; }
+  /// From one time to another the valve of a vehicle is held where it empties its cylinder; see ControlValve::BailOff.
+  void BailOff(int vehicle, double from_s, double to_s) { bail_offs_.push_back({vehicle, from_s, to_s}); }
 
   /// Pressure that acts in each vehicle's cylinder [Pa, gauge]; resizes. Times must ascend.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa);
@@ -294,7 +294,6 @@ class PneumaticBrake {
     line_.ForEachField(function);
     for (double& p : acting_pa_) function(p);
     for (double& p : acting_before_pa_) function(p);
-    for (double& p : independent_pa_) function(p);
     function(steps_), function(supplied_pv_), function(released_pv_), function(given_);
   }
 
@@ -341,8 +340,13 @@ class PneumaticBrake {
   std::vector<ControlValveState> states_;
   std::vector<SourceState> sources_;
   SourceState line_{};
-  std::vector<double> acting_pa_, acting_before_pa_, independent_pa_;
+  std::vector<double> acting_pa_, acting_before_pa_;
   std::vector<int> parted_;  ///< faces
+  struct HeldOff {
+    int vehicle;
+    double from_s, to_s;
+  };
+  std::vector<HeldOff> bail_offs_;
   std::vector<BrakeCommand> commands_;
   double given_ = 0.0;  ///< of commands_
   double steps_ = 0.0, supplied_pv_ = 0.0, released_pv_ = 0.0;
