@@ -357,6 +357,22 @@ class ReportTest(unittest.TestCase):
 
     # Slides, the dip, a vehicle
 
+    def test_air_brake(self):
+        parted = simulated("parted", "hose_parted", "--set", "duration_s=14")
+        page = self.page(parted)
+        self.assertLessEqual({"pressure_picture", "pipe_pressure_picture", "air_brake", "brake_wave"}, set(page.figures))
+        self.assertNotIn("Charging", page.caption("air_brake"))
+        found = wave.application(Run(parted, None))
+        # A drop of 20 kPa travels at 268.1 m/s at most in a pipe that is 1.1 times as long as the train; vents of 6.35 mm and
+        # two cells per vehicle make it slower, by no more than a tenth.
+        self.assertLess(found.speed_mps, 1.01 * 268.1 / 1.1)
+        self.assertGreater(found.speed_mps, 0.9 * 268.1 / 1.1)
+        self.assertLessEqual({vehicle for vehicle, _ in found.sources()}, {75, 76})
+        charging = simulated("charging", "charging", "--set", "train.consist[1].count=9", "--set", "duration_s=200")
+        table = train_brake.load(str(charging))["brake_pressures"]
+        first, *_, last = table["pipe_pressure_pa"].T
+        self.assertIn(f"after {table.time_s[last >= 0.95 * first.max()][0]:.1f} s", self.page(charging).caption("air_brake"))
+
     def test_wheel_slides(self):
         run = simulated("slide", "single_wagon_stop", "--set", "duration_s=50", "--set",
                         "train.consist[0].vehicle.brake_rigging.shoe_load_per_pressure_n_per_pa=0.8", "--set",

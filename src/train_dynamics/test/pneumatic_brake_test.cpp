@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <random>
 #include <stdexcept>
@@ -468,12 +469,10 @@ TEST(PneumaticBrake, ItsStateIsItsListOfFields) {
   EXPECT_GT(whole.cylinder_pa[49], 50e3);
 }
 
-// Cells and steps: cylinder pressures of a service application over the train.
-TEST(PneumaticBrake, TwoCellsPerVehicleAreEnough) {
+// Mean difference [Pa] of the cylinders' pressures of a service application over the train from those of the last.
+std::vector<double> Errors(const std::vector<PneumaticBrakeParams>& variants) {
   std::vector<std::vector<double>> pressures;
-  for (int cells : {1, 2, 4, 8, 16}) {
-    PneumaticBrakeParams params;
-    params.pipe.cells_per_vehicle = cells;
+  for (const PneumaticBrakeParams& params : variants) {
     Train train(params, 100, 10.5);
     train.brake.Command(Apply(0.0, 100.0));
     pressures.emplace_back();
@@ -482,13 +481,40 @@ TEST(PneumaticBrake, TwoCellsPerVehicleAreEnough) {
       for (double p : train.cylinder_pa) pressures.back().push_back(p);
     }
   }
-  double error[4] = {};
-  for (int k = 0; k < 4; ++k) {
-    for (std::size_t i = 0; i < pressures[4].size(); ++i)
-      error[k] += std::abs(pressures[k][i] - pressures[4][i]) / static_cast<double>(pressures[4].size());
+  std::vector<double> errors;
+  for (const std::vector<double>& p : pressures) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) sum += std::abs(p[i] - pressures.back()[i]);
+    errors.push_back(sum / static_cast<double>(p.size()));
   }
-  EXPECT_LT(error[1], 3e3);
-  EXPECT_LT(error[2], error[0]);
+  errors.pop_back();
+  return errors;
+}
+
+TEST(PneumaticBrake, ConvergesInSteps) {
+  std::vector<PneumaticBrakeParams> variants(5);
+  double step_ms = 5.0;
+  for (PneumaticBrakeParams& params : variants) {
+    params.pipe.longest_step_ms = step_ms;
+    step_ms *= 0.5;
+  }
+  const std::vector<double> errors = Errors(variants);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    std::printf("steps of %g ms: %.3f kPa\n", 5.0 / (1 << i), 1e-3 * errors[i]);
+    if (i > 0) EXPECT_LT(errors[i], 0.7 * errors[i - 1]);
+  }
+  EXPECT_LT(errors[0], 2e3);
+}
+
+TEST(PneumaticBrake, ConvergesInCells) {
+  std::vector<PneumaticBrakeParams> variants(5);
+  for (int i = 0; i < 5; ++i) variants[i].pipe.cells_per_vehicle = 1 << i;
+  const std::vector<double> errors = Errors(variants);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    std::printf("%d cells: %.3f kPa\n", 1 << i, 1e-3 * errors[i]);
+    if (i > 0) EXPECT_LT(errors[i], 0.8 * errors[i - 1]);
+  }
+  EXPECT_LT(errors[1], 3e3);  // two are enough
 }
 
 // No emergency part may fire in service, release or recharge, at any cell count: a seeded search.

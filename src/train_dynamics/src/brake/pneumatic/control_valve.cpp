@@ -96,8 +96,11 @@ double ControlValve::BailOff(ControlValveState& s, double pipe_pa) const {
     s.quick_action_pa = Min(s.quick_action_pa, pipe_pa);
     return 0.0;
   }
-  if (p_.kind == ControlValveKind::kDirectRelease && s.Mode() != ControlValveMode::kRelease &&
-      s.Mode() != ControlValveMode::kEmergency)
+  if (p_.kind == ControlValveKind::kEcp) {
+    s.SetMode(ControlValveMode::kBailedOff);  // for the step that follows
+    return 0.0;
+  }
+  if (s.Mode() != ControlValveMode::kRelease && s.Mode() != ControlValveMode::kEmergency)
     s.SetMode(ControlValveMode::kBailedOff);
   return PassToPlace(exhaust_, dt_s_, s.cylinder_pa, cylinder_m3_, kAtmospherePa);
 }
@@ -253,8 +256,9 @@ double ControlValve::StepEcp(const TrainLine& line, ControlValveState& s, double
   if (pipe_pa > s.quick_action_pa)
     s.quick_action_pa = pipe_pa;  // the highest so far: an empty train is no emergency
   const bool lost = charged && pipe_pa < kAtmospherePa + e.emergency_pipe_kpa * 1e3;
-  const bool emergency = line.ecp_emergency || lost;
-  const double goal = (emergency ? 1.0 : line.ecp_goal) * e.maximum_cylinder_kpa * 1e3;
+  const bool held = s.Mode() == ControlValveMode::kBailedOff;
+  const bool emergency = !held && (line.ecp_emergency || lost);
+  const double goal = (emergency ? 1.0 : held ? 0.0 : line.ecp_goal) * e.maximum_cylinder_kpa * 1e3;
   s.SetMode(emergency    ? ControlValveMode::kEmergency
             : goal > 0.0 ? ControlValveMode::kApply
                          : ControlValveMode::kRelease);

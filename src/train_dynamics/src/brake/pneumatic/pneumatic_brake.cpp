@@ -12,7 +12,6 @@
 namespace train_dynamics {
 namespace {
 
-constexpr double kLongestStep = 5e-3;         // [s]
 constexpr double kDischarge = 0.8;            // [A]
 constexpr double kRelayBand = 10e3;           // [Pa] of error over which a relay opens fully [A]
 constexpr double kRadioPatience = 45.0;       // [s] [A]
@@ -31,8 +30,8 @@ PipeGrid MakeGrid(const PneumaticBrakeParams& params, const std::vector<double>&
   return PipeGrid(params.pipe.inner_diameter_mm * 1e-3, params.pipe.temperature_k, length, branch);
 }
 
-double StepFor(const PipeGrid& grid) {
-  double step = kLongestStep;
+double StepFor(const PipeGrid& grid, double longest_s) {
+  double step = longest_s;
   while (step > grid.LongestStep()) step *= 0.5;
   return step;
 }
@@ -201,7 +200,7 @@ PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
                                std::vector<BrakeCommand> commands)
     : params_(params),
       grid_(MakeGrid(params, vehicle_length_m)),
-      dt_s_(StepFor(grid_)),
+      dt_s_(StepFor(grid_, 1e-3 * params.pipe.longest_step_ms)),
       flow_(grid_, kAtmospherePa + 1e3 * params.initial_pressure_kpa.value_or(params.charged_pressure_kpa)),
       commands_(std::move(commands)) {
   const int vehicles = static_cast<int>(vehicle_length_m.size());

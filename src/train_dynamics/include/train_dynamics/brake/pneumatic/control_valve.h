@@ -261,7 +261,7 @@ class ControlValve {
   ///
   /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills it
   /// again when the handle is let go. Graduated release lets its control reservoir down to the pipe, and so lets go in its
-  /// release time. ECP empties the cylinder while the handle is held.
+  /// release time; so does ECP, while the handle is held.
   double BailOff(ControlValveState& s, double pipe_pa) const;
 
   /// p V of all air that the state holds [J].

@@ -23,6 +23,7 @@ struct TrainPipeParams {
   double temperature_k = 293.15;
   double leakage_g_per_s_km = 0.0;
   int cells_per_vehicle = 2;
+  double longest_step_ms = 5.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -38,6 +39,8 @@ struct TrainPipeParams {
              "leakage of the charged pipe per km of it; proportional to the gauge pressure");
     v.Integer("cells_per_vehicle", cells_per_vehicle, Range{1, 1000, false, false},
               "number of volumes by which each vehicle's pipe is computed");
+    v.Number("longest_step_ms", longest_step_ms, Range{0.01, 5.0, false, false},
+             "longest time step of the pipe and its valves; halved until half a cell is left to a wave");
   }
 };
 
