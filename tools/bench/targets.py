@@ -6,6 +6,8 @@ from table import Table, number
 TARGETS = [
     ("2D train, one thread, everything included", "runs", "2d_1_ns", 220, "ns per vehicle-step"),
     ("the same with all wheels locked", "vehicles", "locked_ns", 450, "ns per vehicle-step"),
+    ("pneumatic brake, share of a 2D train's step", "vehicles", "pneumatic_share", 15, "%"),
+    ("pneumatic brake alone, share of real time", "vehicles", "pneumatic_of_real_time", 5, "%"),
     ("emergency stop with its bag, 2D, one thread", "runs", "2d_1_wall_s", 4.0, "s"),
     ("emergency stop with its bag, 2D, all cores", "runs", "2d_{cores}_wall_s", 2.3, "s"),
     ("emergency stop with its bag, LTD, one thread", "runs", "ltd_1_wall_s", 0.15, "s"),

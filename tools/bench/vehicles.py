@@ -11,10 +11,13 @@ def run():
     vehicles, train, parts = map(workspace.bench, ("vehicle_bench", "train_bench", "wagon_elements_bench"))
     operations = json.loads(measure.Run([workspace.program("train_dynamics", "wagon_operations")]).stdout)
     per_record = measure.google_benchmark(workspace.program("train_results", "recording_bench"))
+    pneumatic_ns = max(_ns(train, f"pneumatic_brake/{what}") for what in ("emergency", "service"))
     ltd, ltd_shares = _ltd_exchange(vehicles, train)
     step, creep_shares = _parts(parts, operations)
     tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), ltd, _recording(per_record), step]
     return tables, {"locked_ns": _ns(train, "exchange_locked/2d/1"), "bag_us": 1e6 * per_record["bag"]["cpu_time"],
+                    "pneumatic_share": pneumatic_ns / _ns(train, "exchange/2d/1"),
+                    "pneumatic_of_real_time": pneumatic_ns * 242 / 1e6,  # vehicles; [ns] that are simulated
                     **ltd_shares, **creep_shares}
 
 
@@ -50,7 +53,9 @@ def _exchanges(results):
 
 def _beside(results):
     rows = [("couplers", number(_ns(results, "couplers")), "every exchange"),
-            ("air brake", number(_ns(results, "air_brake")), "every exchange")]
+            ("air brake", number(_ns(results, "air_brake")), "every exchange"),
+            ("pneumatic brake, emergency", number(_ns(results, "pneumatic_brake/emergency")), "every exchange"),
+            ("pneumatic brake, service and release", number(_ns(results, "pneumatic_brake/service")), "every exchange")]
     for model in ("2d", "ltd"):
         record = _ns(results, f"record/{model}")
         rows.append((f"record with digest, {model}", number(record), "every 10 steps"))
