@@ -126,6 +126,19 @@ fuzz: deps ## hostile input for every parser, FUZZ_SECONDS=60 each (clang), in b
 	@$(fuzz) fuzzers $(quietly)
 	@tools/fuzz.sh build_fuzz devel_fuzz $(FUZZ_SECONDS)
 
+# An install space of its own, as it lies on the machine where the package is installed.
+.PHONY: deb
+deb: deps ## Debian packages for users without the source tree, in build_deb/packages/
+	@env DESTDIR=$(CURDIR)/build_deb/root $(catkin_make) --build build_deb/build -DCATKIN_DEVEL_PREFIX=$(CURDIR)/build_deb/devel \
+	  -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=OFF -DCMAKE_INSTALL_PREFIX=/opt/train_brake \
+	  -DCMAKE_INSTALL_RPATH=/opt/train_brake/lib install $(quietly)
+	@tools/deb/make_deb.sh build_deb/root build_deb/packages
+
+.PHONY: test-deb
+test-deb: deb ## ... installed, run and removed on a bare Debian 12 (debootstrap; needs root and a Debian mirror)
+	@tools/install_packages.sh packages_deb.txt
+	@tools/deb/test_deb.sh build_deb/packages
+
 .PHONY: check-deps
 check-deps: ## check who includes whom
 	@tools/check_dependencies.sh
@@ -155,4 +168,4 @@ tidy: build ## static analysis (clang-tidy 14)
 
 .PHONY: clean
 clean: ## remove everything built; results stay
-	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz src/CMakeLists.txt .catkin_workspace
+	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz build_deb src/CMakeLists.txt .catkin_workspace

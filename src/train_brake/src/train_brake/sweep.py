@@ -75,6 +75,7 @@ def _arguments(argv: List[str]) -> argparse.Namespace:
     parser.add_argument("--model", choices=("2d", "ltd", "ltd-no-inertia"), help="of all runs")
     parser.add_argument("--results", action="append", default=[], metavar="PATH",
                         help="shown on the page, as named in results.csv (default: stopping distance or end speed, largest forces)")
+    parser.add_argument("--figures", action="store_true", help="write each figure of the page into OUT/figures, too, as SVG and PNG")
     parser.add_argument("--jobs", type=_positive, metavar="N", default=len(os.sched_getaffinity(0)), help="runs at a time (default: cores)")
     parser.add_argument("--keep-records", action="store_true", help="keep each run's train.bag, too")
     parser.add_argument("--plan-only", action="store_true", help="write the plan, run nothing")
@@ -309,7 +310,7 @@ def _run(options: argparse.Namespace, train_sim) -> int:
         print(f"sweep: wrote {study.folder / 'percentiles.csv'}")
     from train_brake_report.study_page import write_page  # pylint: disable=import-outside-toplevel
 
-    print(f"sweep: wrote {write_page(study, rows, options.results)}")
+    print(f"sweep: wrote {write_page(study, rows, options.results, options.figures)}")
     if len(rows) < len(study.plan):
         print(f"sweep: {len(rows)} of {len(study.plan)} runs are done; `rosrun train_brake sweep {study.folder}` goes on", file=sys.stderr)
     broken = [row["run"] for row in rows if row.get("fault")]

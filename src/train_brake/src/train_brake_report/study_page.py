@@ -159,7 +159,7 @@ def figures_of(study: Study, rows: Rows, results: Sequence[str]) -> List[Figure]
     return figures
 
 
-def write_page(study: Study, rows: Rows, results: Sequence[str]) -> pathlib.Path:
+def write_page(study: Study, rows: Rows, results: Sequence[str], with_files: bool = False) -> pathlib.Path:
     """@raises StudyError  if there is no such result"""
     known = {name for row in rows for name in row if is_number(row[name])}
     unknown = [name for name in results if name not in known]
@@ -172,6 +172,10 @@ def write_page(study: Study, rows: Rows, results: Sequence[str]) -> pathlib.Path
         fixed = f" All runs: {', '.join(study.asked['set'])}." if study.asked["set"] else ""
         made = f"Made on {datetime.datetime.now():%Y-%m-%d %H:%M} by sweep of train_brake.{fixed}"
         html = page.render(f"Study of {scenario}: {count}", [], [page.Section("Results", "results", figures)], made)
+        if with_files:
+            (study.folder / "figures").mkdir(exist_ok=True)
+            for figure in figures:
+                figure.save(study.folder / "figures")
     file = study.folder / "study.html"
     unfinished = file.with_name(file.name + ".unfinished")
     unfinished.write_text(html)
