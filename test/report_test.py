@@ -26,7 +26,7 @@ import train_brake.run_files
 from train_brake import Table
 from train_brake import bag as bag_reader
 from train_brake_report import cards, command, consist, figure, paper, series, slides, style, wave
-from train_brake_report.figures import space_time
+from train_brake_report.figures import changes, space_time
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs
 from train_brake_report.track import Track
@@ -241,6 +241,30 @@ class ReportTest(unittest.TestCase):
         of_runs = [json.loads((folder / "summary.json").read_text())["final_speed_kmh"]["mean"] for folder in (ltd(), two_d())]
         self.assertIn(f"{difference}: {figure.minus(f'{of_runs[1] - of_runs[0]:+.4f}')} km/h at the last common instant",
                       page.caption("speeds"))
+
+    def test_what_differs_is_a_table_of_the_changed_keys(self):
+        slower = simulated("slower", "emergency", "--model", "ltd", "--set", "duration_s=10", "--set", "initial_speed_kmh=60",
+                           "--set", "commands[0].time_s=3")
+        table = changes.table(group_of(ltd(), slower)).table
+        self.assertEqual([["commands[0].time_s", "2", "3"], ["initial_speed_kmh", "80", "60"]], sorted(table.rows))
+        self.assertIsNone(changes.table(group_of(ltd(), ltd())).table)
+
+    def test_each_runs_own_commands_are_marked_by_its_name_beyond_the_curves(self):
+        later = simulated("later", "emergency", "--model", "ltd", "--set", "duration_s=10", "--set", "commands[0].time_s=3")
+        group = group_of(ltd(), later)
+        self.assertEqual([(2, "ltd"), (3, "later")], [(command["time_s"], who) for command, _, who in group.commands()])
+        with style.applied():
+            axes = figure.new_canvas(4.0).subplots()
+            axes.plot([0, 10], [0, 1])
+            axes.set_xlim(0, 10)
+            style.mark_commands(axes, group.commands())
+            names = [text for text in axes.texts if "emergency" in text.get_text()]
+            axes.figure.draw_without_rendering()
+            top = axes.transData.transform((0, 1))[1]  # of the curve
+            boxes = [text.get_window_extent() for text in names]
+            self.assertEqual(2, len(boxes))
+            self.assertTrue(all(box.y0 >= top for box in boxes))
+            self.assertFalse(boxes[0].overlaps(boxes[1]))
 
     def test_runs_of_unlike_trains_are_not_subtracted(self):
         page = self.page(ltd(), six_wagons())

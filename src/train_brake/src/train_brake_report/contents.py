@@ -4,13 +4,14 @@ from typing import Callable, List, Tuple, Union
 
 from train_brake_report.figure import Figure, LeftOut
 from train_brake_report.figures import (
-    air_brake, brake_table, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides,
+    air_brake, brake_table, changes, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides,
 )
 from train_brake_report.group import Group
 
 Item = Union[Figure, Tuple[str, str]]  # a figure, or (title, why it is left out)
 
 OF_RUNS: List[Tuple[str, Callable[[Group], Figure]]] = [
+    ("What differs between the runs", changes.table),
     ("Speed", speeds.draw),
     ("Over the distance", route.draw),
     ("Engineering numbers", route.quantities),
@@ -43,6 +44,7 @@ def _draw(title: str, draw: Callable, *arguments) -> Item:
 
 def of_runs(group: Group) -> List[Item]:
     items = [_draw(title, draw, group) for title, draw in OF_RUNS]
+    items = [item for item in items if isinstance(item, Figure) or item[1]]  # without a reason: there is nothing to miss
     if group.name:
         for item in items:
             if isinstance(item, Figure):

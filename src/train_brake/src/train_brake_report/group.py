@@ -65,6 +65,8 @@ class Group:
     def difference(run: Run, first: Run) -> str:
         return f"{run.label} \u2212 {first.label}"
 
-    def commands(self) -> list:
-        """Those that all runs have."""
-        return [c for c in self.runs[0].commands if all(c in run.commands for run in self.runs)]
+    def commands(self) -> List[Tuple[dict, str, str]]:
+        """To be marked in figures: those of all runs, and each run's own in its colour, by its label."""
+        common = [c for c in self.runs[0].commands if all(c in run.commands for run in self.runs)]
+        own = [(c, self.colour(run), run.label) for run in self.runs for c in run.commands if c not in common]
+        return [(c, style.MUTED, "") for c in common] + own

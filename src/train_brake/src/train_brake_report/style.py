@@ -1,6 +1,7 @@
 """How all figures look: one palette, readable by the colour-blind and on a projector."""
 
 import contextlib
+from typing import Sequence, Tuple
 
 import matplotlib
 import matplotlib.ticker
@@ -89,24 +90,49 @@ def label_ends(axes: Axes, ends) -> None:
                                   "relpos": (0.0, 0.5)})
 
 
+def _name_of(command: dict) -> str:
+    kind = command["kind"].replace("_", " ")
+    if kind == "apply":
+        return f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa"
+    if "pressure_kpa" in command:
+        return f"{kind} {command['pressure_kpa']:g} kPa"
+    return f"{kind} {command['notch']:g}" if "notch" in command else kind
+
+
 MOST_COMMANDS = 12  # that a figure names
 
 
-def mark_commands(axes: Axes, commands, named: bool = True, at_bottom: bool = False) -> None:
-    """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their names."""
-    if len(commands) > MOST_COMMANDS:
-        commands = [command for command in commands if "notch" not in command]
-        named = named and len(commands) <= MOST_COMMANDS
-    y, offset, align = (0.0, 4, "bottom") if at_bottom else (1.0, -3, "top")
-    for command in commands:
-        axes.axvline(command["time_s"], color=MUTED, linewidth=1.0, linestyle=(0, (1, 2)))
-        if named:
-            kind = command["kind"].replace("_", " ")
-            if kind == "apply":
-                kind = f"reduce pipe by {command.get('reduction_kpa', 0):g} kPa"
-            elif "pressure_kpa" in command:
-                kind += f" {command['pressure_kpa']:g} kPa"
-            elif "notch" in command:
-                kind += f" {command['notch']:g}"
-            axes.annotate(kind, (command["time_s"], y), (4, offset), xycoords=("data", "axes fraction"),
-                          textcoords="offset points", va=align, fontsize=9.5, color=MUTED)
+def mark_commands(axes: Axes, marks: Sequence[Tuple[dict, str, str]], named: bool = True, at_bottom: bool = False) -> None:
+    """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their names. marks: (command, colour, whose it is; empty: all runs'). Call it when all is
+    drawn: the names get rows of their own, beyond the curves (of a linear axis), and no two of them share a place."""
+    if len(marks) > MOST_COMMANDS:
+        marks = [mark for mark in marks if "notch" not in mark[0]]
+        named = named and len(marks) <= MOST_COMMANDS
+    for command, colour, _ in marks:
+        axes.axvline(command["time_s"], color=colour, linewidth=1.0, linestyle=(0, (1, 2)))
+    if not named or not marks:
+        return
+    size = 9.5
+    canvas = axes.figure
+    width_pt = 72 * canvas.get_figwidth() * 0.86  # of the panel, roughly: labels and ticks take the rest
+    left, right = axes.get_xlim()
+    ends, placed = [], []  # where each row's last name ends [pt]
+    for command, colour, who in sorted(marks, key=lambda mark: mark[0]["time_s"]):
+        text = _name_of(command) + (f" ({who})" if who else "")
+        x = width_pt * (command["time_s"] - left) / (right - left)
+        wide = 0.6 * size * len(text) + 8
+        is_late = x + wide > width_pt  # to the left of its line
+        begin = x - wide if is_late else x
+        row = next((i for i, end in enumerate(ends) if end <= begin), len(ends))
+        ends[row:row + 1] = [begin + wide]
+        placed.append((command["time_s"], row, text, colour, is_late))
+    height_pt = 72 * canvas.get_figheight() * (axes.get_subplotspec().get_position(canvas).height if axes.get_subplotspec() else 0.8)
+    share = min(0.4, (1.35 * size * len(ends) + 4) / height_pt)
+    low, high = axes.get_ylim()
+    room = (high - low) * share / (1 - share)
+    axes.set_ylim((low - room, high) if at_bottom else (low, high + room))
+    for time_s, row, text, colour, is_late in placed:
+        offset = (4 + 1.35 * size * row) if at_bottom else (-3 - 1.35 * size * row)
+        axes.annotate(text, (time_s, 0.0 if at_bottom else 1.0), (-4 if is_late else 4, offset), xycoords=("data", "axes fraction"),
+                      textcoords="offset points", va="bottom" if at_bottom else "top", ha="right" if is_late else "left",
+                      fontsize=size, color=colour)

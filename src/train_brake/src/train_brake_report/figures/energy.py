@@ -64,7 +64,7 @@ def draw(group: Group) -> Figure:
         style.legend_above(below)
     for axes in (stack, single, below):
         axes.margins(x=0)
-        style.mark_commands(axes, group.commands(), named=axes is single)
+        style.mark_commands(axes, group.commands(), named=axes is stack)
     caption = ("Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
                "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
                f"{numpy.median(numpy.diff(time_s)):g} s.")
