@@ -139,6 +139,11 @@ test-deb: deb ## ... installed, run and removed on a bare Debian 12 (debootstrap
 	@tools/install_packages.sh packages_deb.txt
 	@tools/deb/test_deb.sh build_deb/packages
 
+.PHONY: site
+site: ## the pages and the C++ API as a site in site/ (MkDocs, Doxygen; no network)
+	@tools/install_packages.sh packages_site.txt
+	@tools/site.py
+
 .PHONY: check-deps
 check-deps: ## check who includes whom
 	@tools/check_dependencies.sh
@@ -168,4 +173,4 @@ tidy: build ## static analysis (clang-tidy 14)
 
 .PHONY: clean
 clean: ## remove everything built; results stay
-	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz build_deb src/CMakeLists.txt .catkin_workspace
+	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz build_deb build_site site src/CMakeLists.txt .catkin_workspace
