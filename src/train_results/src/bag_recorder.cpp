@@ -59,15 +59,19 @@ Bytes BagRecorder::Checkpoint() {
   return writer.bytes();
 }
 
+template <class View>
+void BagRecorder::WriteView(int topic, ros::Time time, const train_dynamics::TrainRecord& record) {
+  View view;
+  Convert(record, view);
+  bag_.WriteView(topic, time, view);
+}
+
 void BagRecorder::Record(const train_dynamics::TrainRecord& record) {
   // A bag knows no time before this one.
   const ros::Time time = std::max(ros::TIME_MIN, ros::Time(record.time_s));
-  Convert(record, state_);
-  bag_.Write(state_topic_, time, state_);
-  Convert(record, forces_);
-  bag_.Write(forces_topic_, time, forces_);
-  Convert(record, pressures_);
-  bag_.Write(pressures_topic_, time, pressures_);
+  WriteView<TrainStateView>(state_topic_, time, record);
+  WriteView<InTrainForcesView>(forces_topic_, time, record);
+  WriteView<BrakePressuresView>(pressures_topic_, time, record);
   if (record.ledger) {
     Convert(record, ledger_);
     bag_.Write(ledger_topic_, time, ledger_);

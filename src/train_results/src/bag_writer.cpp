@@ -36,23 +36,29 @@ using train_dynamics::ByteReader;
 using train_dynamics::Bytes;
 using train_dynamics::ByteWriter;
 
-void Append(Bytes& bytes, const std::string& text) { bytes.insert(bytes.end(), text.begin(), text.end()); }
+// To Bytes or to the buffer of a chunk.
 
-template <class Number>
-void Append(Bytes& bytes, Number number) {
+template <class Buffer>
+void Append(Buffer& bytes, const std::string& text) {
+  bytes.insert(bytes.end(), text.begin(), text.end());
+}
+
+template <class Buffer, class Number>
+void Append(Buffer& bytes, Number number) {
   static_assert(std::is_integral_v<Number> || std::is_enum_v<Number>);
   const auto* begin = reinterpret_cast<const std::uint8_t*>(&number);
   bytes.insert(bytes.end(), begin, begin + sizeof number);
 }
 
-void Append(Bytes& bytes, ros::Time time) {
+template <class Buffer>
+void Append(Buffer& bytes, ros::Time time) {
   Append(bytes, time.sec);
   Append(bytes, time.nsec);
 }
 
 /// Appends what `append` does, behind its length.
-template <class Appender>
-void AppendWithLength(Bytes& bytes, const Appender& append) {
+template <class Buffer, class Appender>
+void AppendWithLength(Buffer& bytes, const Appender& append) {
   const std::size_t place = bytes.size();
   Append(bytes, std::uint32_t{0});
   append();
@@ -60,10 +66,11 @@ void AppendWithLength(Bytes& bytes, const Appender& append) {
   std::memcpy(&bytes[place], &length, sizeof length);
 }
 
-void AppendFields(Bytes&) {}
+template <class Buffer>
+void AppendFields(Buffer&) {}
 
-template <class Value, class... More>
-void AppendFields(Bytes& bytes, const char* name, const Value& value, const More&... more) {
+template <class Buffer, class Value, class... More>
+void AppendFields(Buffer& bytes, const char* name, const Value& value, const More&... more) {
   AppendWithLength(bytes, [&] {
     bytes.insert(bytes.end(), name, name + std::strlen(name));
     bytes.push_back('=');
@@ -73,8 +80,8 @@ void AppendFields(Bytes& bytes, const char* name, const Value& value, const More
 }
 
 /// Appends the header of a record: AppendHeader(bytes, name, value, name, value ...).
-template <class... Fields>
-void AppendHeader(Bytes& bytes, const Fields&... fields) {
+template <class Buffer, class... Fields>
+void AppendHeader(Buffer& bytes, const Fields&... fields) {
   AppendWithLength(bytes, [&] { AppendFields(bytes, fields...); });
 }
 
@@ -148,7 +155,6 @@ void BagWriter::GoOn() {
 
 Bytes BagWriter::Checkpoint() {
   WriteChunk();
-  if (fdatasync(descriptor_) != 0) Fail();
   kept_chunks_ = chunks_.size();
   ByteWriter writer;
   writer.Add(size_);
@@ -170,6 +176,10 @@ Bytes BagWriter::Checkpoint() {
     }
   }
   return writer.bytes();
+}
+
+void BagWriter::Sync() const {
+  if (fdatasync(descriptor_) != 0) Fail();
 }
 
 BagWriter::~BagWriter() {
@@ -223,10 +233,12 @@ void BagWriter::WriteChunk() {
     index.insert(index.end(), connection.index.begin(), connection.index.end());
   }
   Write(header, size_);
-  Write(chunk_, size_ + header.size());
+  Write(chunk_.data(), chunk_.size(), size_ + header.size());
   Write(index, size_ + header.size() + chunk_.size());
 
-  for (const Bytes* bytes : {&header, &chunk_, &index}) digest_.Add(bytes->data(), bytes->size());
+  digest_.Add(header.data(), header.size());
+  digest_.Add(chunk_.data(), chunk_.size());
+  digest_.Add(index.data(), index.size());
   open_.position = size_;
   size_ += header.size() + chunk_.size() + index.size();
   chunks_.push_back(std::exchange(open_, {}));
@@ -283,10 +295,10 @@ void BagWriter::Fail() const {
   throw std::system_error(error, "cannot write " + file_ + hint);
 }
 
-void BagWriter::Write(const Bytes& bytes, std::uint64_t position) {
-  for (std::size_t done = 0; done < bytes.size();) {
+void BagWriter::Write(const std::uint8_t* bytes, std::size_t count, std::uint64_t position) {
+  for (std::size_t done = 0; done < count;) {
     const ssize_t written =
-        pwrite(descriptor_, &bytes[done], bytes.size() - done, static_cast<off_t>(position + done));
+        pwrite(descriptor_, bytes + done, count - done, static_cast<off_t>(position + done));
     if (written > 0) {
       done += static_cast<std::size_t>(written);
     } else if (errno != EINTR) {

@@ -29,34 +29,62 @@ void Copy(const From& from, To& to) {
                  [](auto value) { return static_cast<typename To::value_type>(value); });
 }
 
-}  // namespace
+template <class From, class To>
+void Copy(const std::vector<From>& from, ArrayView<To, From>& to) {
+  View(from, to);
+}
 
-void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
+void CopyForces(const TrainRecord& record, std::vector<float>& to) {
+  const std::vector<double>& force_n = record.held.coupler_force_n;
+  to.resize(record.coupler_extension_m.size());
+  for (std::size_t c = 0; c < to.size(); ++c) to[c] = static_cast<float>(force_n[c + 1]);
+}
+void CopyForces(const TrainRecord& record, ArrayView<float>& to) {
+  to = {record.held.coupler_force_n.data() + 1, record.coupler_extension_m.size()};
+}
+
+// Of a message or its view.
+
+template <class State>
+void ConvertState(const TrainRecord& record, State& message) {
   Stamp(record, message);
   train_dynamics::ForEachRecordField(
       [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { Copy(from, to); }, record.vehicles,
       message);
   Copy(record.acceleration_mps2, message.acceleration_mps2);
-  message.vehicle_digest = record.vehicles.state_digest;
+  Copy(record.vehicles.state_digest, message.vehicle_digest);
   message.state_digest = record.state_digest;
 }
 
-void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) {
+template <class Forces>
+void ConvertForces(const TrainRecord& record, Forces& message) {
   Stamp(record, message);
-  const size_t connections = record.coupler_extension_m.size();
-  message.coupler_force_n.resize(connections);
-  for (size_t c = 0; c < connections; ++c) {
-    message.coupler_force_n[c] = static_cast<float>(record.held.coupler_force_n[c + 1]);
-  }
+  CopyForces(record, message.coupler_force_n);
   Copy(record.coupler_extension_m, message.coupler_extension_m);
 }
 
-void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
+template <class Pressures>
+void ConvertPressures(const TrainRecord& record, Pressures& message) {
   Stamp(record, message);
   Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
   train_dynamics::ForEachBrakeField([](const char*, const auto& from, auto& to) { Copy(from, to); },
                                     record.brake, message);
 }
+
+}  // namespace
+
+void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
+  ConvertState(record, message);
+}
+void Convert(const TrainRecord& record, TrainStateView& view) { ConvertState(record, view); }
+void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) {
+  ConvertForces(record, message);
+}
+void Convert(const TrainRecord& record, InTrainForcesView& view) { ConvertForces(record, view); }
+void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
+  ConvertPressures(record, message);
+}
+void Convert(const TrainRecord& record, BrakePressuresView& view) { ConvertPressures(record, view); }
 
 void Convert(const TrainRecord& record, train_brake_msgs::Slides& message) {
   Stamp(record, message);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <regex>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "strict_config/writer.h"
@@ -191,7 +192,6 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
 }
 
 void RunOutput::StartThread() {
-  if (bag_ == nullptr && csv_ == nullptr) return;
   thread_ = std::make_unique<RecorderThread>([this](const train_dynamics::TrainRecord& record) {
     if (bag_ != nullptr) bag_->Record(record);
     if (csv_ != nullptr) csv_->Record(record);
@@ -211,7 +211,7 @@ void RunOutput::Attempt(const Action& action) {
 }
 
 void RunOutput::Record(const train_dynamics::TrainRecord& record) {
-  if (thread_ != nullptr) Attempt([&] { thread_->Record(record); });
+  if (HasRecorder()) Attempt([&] { thread_->Record(record); });
 }
 
 bool RunOutput::AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted) const {
@@ -226,14 +226,22 @@ bool RunOutput::AskForCheckpoint(train_dynamics::TrainMaster& master, bool wante
 void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
                                const train_dynamics::RunSummary& summary) {
   Attempt([&] {
-    if (thread_ != nullptr) thread_->Drain();
-    train_dynamics::ByteWriter output;
-    output.Add(bag_ != nullptr ? bag_->Checkpoint() : train_dynamics::Bytes());
-    output.Add(csv_ != nullptr ? csv_->Checkpoint() : train_dynamics::Bytes());
     train_dynamics::TrainCheckpoint checkpoint = master.Checkpoint();
     checkpoint.scenario = identity_;
     checkpoint.summary = summary.Memory();
-    checkpoint.output = output.bytes();
+    thread_->Do(
+        [this, checkpoint = std::move(checkpoint)]() mutable { LeaveCheckpoint(std::move(checkpoint)); });
+  });
+}
+
+void RunOutput::LeaveCheckpoint(train_dynamics::TrainCheckpoint checkpoint) {
+  if (to_disk_.valid()) to_disk_.get();
+  train_dynamics::ByteWriter output;
+  output.Add(bag_ != nullptr ? bag_->Checkpoint() : train_dynamics::Bytes());
+  output.Add(csv_ != nullptr ? csv_->Checkpoint() : train_dynamics::Bytes());
+  checkpoint.output = output.bytes();
+  to_disk_ = std::async(std::launch::async, [this, checkpoint = std::move(checkpoint)] {
+    if (bag_ != nullptr) bag_->Sync();
     WriteFile(folder_ / kCheckpointFile, TextOf(Encode(checkpoint)));
   });
 }
@@ -249,7 +257,10 @@ void RunOutput::Finish(const train_dynamics::TrainMaster& master, const train_dy
       if (error == nullptr) error = std::current_exception();
     }
   };
-  if (thread_ != nullptr) attempt([&] { thread_->Finish(); });
+  attempt([&] { thread_->Finish(); });
+  attempt([&] {
+    if (to_disk_.valid()) to_disk_.get();
+  });
   if (bag_ != nullptr) attempt([&] { bag_->Close(); });
   attempt([&] { WriteFile(folder_ / "summary.json", summary_json); });
   attempt([&] { WriteSlideTables(folder_, summary.slides()); });

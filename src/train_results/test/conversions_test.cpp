@@ -5,9 +5,12 @@
 #include <train_brake_msgs/Configure.h>
 #include <train_brake_msgs/Step.h>
 
+#include <cstdint>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace train_results {
 namespace {
@@ -96,6 +99,55 @@ TEST(Conversions, TakeEveryQuantityOfARecordToTheState) {
         EXPECT_TRUE(std::equal(from.begin(), from.end(), to.begin(), to.end())) << field.name;
       },
       record.vehicles, state);
+}
+
+/// A message as bytes.
+template <class Message>
+std::vector<std::uint8_t> BytesOf(const Message& message) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+/// What the view of a record gives, and what its message does.
+template <class View>
+void ExpectTheBytesOfTheMessage(const train_dynamics::TrainRecord& record) {
+  View view;
+  Convert(record, view);
+  std::vector<std::uint8_t> bytes(SerializedLength(view));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  Serialize(stream, view);
+  typename View::Message message;
+  Convert(record, message);
+  EXPECT_EQ(BytesOf(message), bytes) << ros::message_traits::datatype<typename View::Message>();
+}
+
+TEST(Conversions, ViewsHaveTheBytesOfTheirMessages) {
+  train_dynamics::TrainRecord record;
+  for (const int vehicles : {1, 3}) {
+    record.vehicles = train_dynamics::VehicleRecords(vehicles, {});
+    record.time_s = 12.345678901;
+    record.exchange = 12346;
+    record.state_digest = 0x123456789abcdef0;
+    double number = 0.1;
+    const auto fill = [&](std::vector<double>& array, int count) {
+      array.clear();
+      for (int i = 0; i < count; ++i) array.push_back(number *= -1.3);
+    };
+    train_dynamics::ForEachRecordField(
+        [&](const train_dynamics::RecordInfo&, auto& array) { fill(array, vehicles); }, record.vehicles);
+    record.vehicles.state_digest.assign(vehicles, 0xfedcba9876543210);
+    fill(record.acceleration_mps2, vehicles);
+    fill(record.held.coupler_force_n, vehicles + 1);
+    fill(record.coupler_extension_m, vehicles - 1);
+    fill(record.cylinder_pressure_pa, vehicles);
+    if (vehicles == 3) fill(record.brake.pipe_pressure_pa, vehicles);
+    record.vehicles.creepage[0] = std::numeric_limits<double>::quiet_NaN();
+    ExpectTheBytesOfTheMessage<TrainStateView>(record);
+    ExpectTheBytesOfTheMessage<InTrainForcesView>(record);
+    ExpectTheBytesOfTheMessage<BrakePressuresView>(record);
+  }
 }
 
 TEST(Conversions, TakeEverySlide) {

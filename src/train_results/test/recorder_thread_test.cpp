@@ -105,6 +105,35 @@ TEST(RecorderThread, FewRecordsDoNotWaitForMore) {
   EXPECT_EQ(1, recorded);
 }
 
+TEST(RecorderThread, TasksAreDoneBetweenTheirRecords) {
+  int recorded = 0;
+  std::vector<int> recorded_before;
+  RecorderThread recorder([&](const TrainRecord&) { ++recorded; });
+  Train train;
+  for (int i = 1; i <= 1000; ++i) {
+    train.Record(recorder);
+    if (i % 100 == 0) recorder.Do([&] { recorded_before.push_back(recorded); });
+  }
+  recorder.Finish();
+  EXPECT_EQ(1000, recorded);
+  EXPECT_EQ((std::vector<int>{100, 200, 300, 400, 500, 600, 700, 800, 900, 1000}), recorded_before);
+}
+
+TEST(RecorderThread, ErrorOfATaskReachesTheRun) {
+  int recorded = 0;
+  RecorderThread recorder([&](const TrainRecord&) { ++recorded; });
+  Train train;
+  train.Record(recorder);
+  recorder.Do([] { throw std::runtime_error("the disk is full"); });
+  const auto fill = [&] {
+    for (int i = 0; i < 100000; ++i) train.Record(recorder);
+  };
+  EXPECT_THROW(fill(), std::runtime_error);
+  EXPECT_THROW(recorder.Do([] {}), std::runtime_error);
+  EXPECT_THROW(recorder.Finish(), std::runtime_error);
+  EXPECT_EQ(1, recorded);
+}
+
 TEST(RecorderThread, DestructorRecordsWhatIsQueued) {
   int recorded = 0;
   {

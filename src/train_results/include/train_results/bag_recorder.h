@@ -21,6 +21,7 @@ class BagRecorder {
   BagRecorder(const std::string& file, const train_dynamics::Bytes& checkpoint, int vehicles);
   void GoOn() { bag_.GoOn(); }
   train_dynamics::Bytes Checkpoint();
+  void Sync() const { bag_.Sync(); }
 
   /// An observer of the run's TrainMaster. @throws std::system_error
   void Record(const train_dynamics::TrainRecord& record);
@@ -29,6 +30,9 @@ class BagRecorder {
   void Close() { bag_.Close(); }
 
  private:
+  /// Writes the message of a view of the record.
+  template <class View>
+  void WriteView(int topic, ros::Time time, const train_dynamics::TrainRecord& record);
   int WagonTopic(int vehicle, int vehicles);
 
   BagWriter bag_;
@@ -36,9 +40,6 @@ class BagRecorder {
   int slides_topic_ = -1;           ///< below 0: nothing has slid yet
   int given_topic_ = -1;            ///< < 0: no command was given so far
   std::map<int, int> wagon_topic_;  ///< by vehicle
-  train_brake_msgs::TrainState state_;
-  train_brake_msgs::InTrainForces forces_;
-  train_brake_msgs::BrakePressures pressures_;
   train_brake_msgs::EnergyLedger ledger_;
   train_brake_msgs::Slides slides_;
   train_brake_msgs::WagonState wagon_;

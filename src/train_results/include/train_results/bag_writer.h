@@ -6,11 +6,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "train_dynamics/numeric/stream_digest.h"
 #include "train_dynamics/train/byte_stream.h"
+#include "train_results/message_views.h"
 
 namespace train_results {
 
@@ -53,10 +56,22 @@ class BagWriter {
     if (chunk_.size() > kChunkThreshold) WriteChunk();
   }
 
+  /// The same of the message that it is a view of: see message_views.h.
+  template <class View>
+  void WriteView(int topic, ros::Time time, const View& view) {
+    const std::uint32_t size = SerializedLength(view);
+    ros::serialization::OStream stream(BeginMessage(topic, time, size), size);
+    Serialize(stream, view);
+    if (chunk_.size() > kChunkThreshold) WriteChunk();
+  }
+
   int topics() const { return static_cast<int>(connections_.size()); }
 
-  /// Writes what has come so far, and waits until it is on the disk. @return what a writer needs to go on behind it
+  /// Writes what has come so far. @return what a writer needs to go on behind it
   train_dynamics::Bytes Checkpoint();
+  /// Waits until what was written before is on the disk. May be called while another thread writes on.
+  /// @throws std::system_error
+  void Sync() const;
 
   /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit; if not even those of
   /// the last checkpoint do beside the index, it stays FILE.active without one.
@@ -65,6 +80,23 @@ class BagWriter {
 
  private:
   using Bytes = train_dynamics::Bytes;
+  /// Leaves the bytes that it grows by as they are: they are written at once.
+  template <class T>
+  struct Uninitialised : std::allocator<T> {
+    template <class U>
+    struct rebind {
+      using other = Uninitialised<U>;
+    };
+    template <class U>
+    void construct(U* place) {
+      ::new (static_cast<void*>(place)) U;
+    }
+    template <class U, class... Arguments>
+    void construct(U* place, Arguments&&... arguments) {
+      ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    }
+  };
+  using Buffer = std::vector<std::uint8_t, Uninitialised<std::uint8_t>>;
   static constexpr std::size_t kChunkThreshold = 768 * 1024;
 
   struct Connection {
@@ -86,7 +118,8 @@ class BagWriter {
   void Truncate();
   void WriteIndex();
   void WriteFileHeader(std::uint64_t index_position, std::size_t connections);
-  void Write(const Bytes& bytes, std::uint64_t position);
+  void Write(const std::uint8_t* bytes, std::size_t count, std::uint64_t position);
+  void Write(const Bytes& bytes, std::uint64_t position) { Write(bytes.data(), bytes.size(), position); }
   [[noreturn]] void Fail() const;
 
   std::string file_;
@@ -97,7 +130,7 @@ class BagWriter {
   std::vector<Chunk> chunks_;    ///< in the file
   std::size_t kept_chunks_ = 0;  ///< of these, that a checkpoint is of
   Chunk open_;
-  Bytes chunk_;  ///< records of the open one
+  Buffer chunk_;  ///< records of the open one
 };
 
 }  // namespace train_results

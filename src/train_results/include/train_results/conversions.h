@@ -13,6 +13,7 @@
 
 #include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/train_master.h"
+#include "train_results/message_views.h"
 
 /// From records of the physics to messages. A message keeps its memory from record to record.
 namespace train_results {
@@ -21,6 +22,10 @@ void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainS
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::InTrainForces& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::BrakePressures& message);
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::Slides& message);
+/// Views of a record, which must outlive them.
+void Convert(const train_dynamics::TrainRecord& record, TrainStateView& view);
+void Convert(const train_dynamics::TrainRecord& record, InTrainForcesView& view);
+void Convert(const train_dynamics::TrainRecord& record, BrakePressuresView& view);
 /// Of a record with a ledger.
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::EnergyLedger& message);
 

@@ -14,8 +14,9 @@ namespace train_results {
 
 /// Lets a recorder work in a thread of its own, so that a run does not wait for its files.
 ///
-/// Records are copied into a queue and recorded in their order. When the queue is full, the run waits: nothing
-/// is lost. The thread wakes for several records at once, or after 0.1 s, because waking costs more than a record.
+/// Records are copied into a queue and recorded in their order, and what else is to be done between two of them is done
+/// there. When the queue is full, the run waits: nothing is lost. The thread wakes for several records at once, or after
+/// 0.1 s, because waking costs more than a record.
 class RecorderThread {
  public:
   using Recorder = std::function<void(const train_dynamics::TrainRecord&)>;
@@ -24,26 +25,34 @@ class RecorderThread {
   /// Finishes; what is thrown then is lost.
   ~RecorderThread();
 
-  /// An observer of the run's TrainMaster. @throws what the recorder threw at an earlier record
+  /// An observer of the run's TrainMaster. @throws what the recorder or a task threw before
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Returns when all records so far are recorded. @throws what the recorder threw
-  void Drain();
-  /// The same, for the last time. @throws what the recorder threw, and only once
+  /// Has something done once all records so far are recorded, before the next one is. @throws as Record
+  void Do(std::function<void()> task);
+  /// Returns when all is recorded and done. @throws what the recorder or a task threw, and only once
   void Finish();
 
  private:
   static constexpr std::uint64_t kQueue = 64;  ///< records
   static constexpr std::uint64_t kBatch = 16;  ///< that are worth a wake-up
 
+  struct Entry {
+    train_dynamics::TrainRecord record;
+    std::function<void()> task;  ///< to do instead, unless it is empty
+  };
+
+  /// The next free entry; waits for one.
+  Entry& Free();
+  void Queue();
   void Work();
 
   Recorder recorder_;
-  std::array<train_dynamics::TrainRecord, kQueue> queue_;  ///< record n is in n % kQueue
+  std::array<Entry, kQueue> queue_;  ///< entry n is in n % kQueue
   std::mutex mutex_;
   std::condition_variable work_, room_;
   std::uint64_t queued_ = 0, recorded_ = 0;  ///< so far
-  bool draining_ = false, ending_ = false;
+  bool ending_ = false;
   std::exception_ptr error_;
   std::thread thread_;
 };

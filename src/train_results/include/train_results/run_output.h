@@ -3,6 +3,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,7 +69,8 @@ class RunOutput {
   /// Asks for a checkpoint where one is due at the end of the next exchange, or is `wanted` and possible there.
   /// @return whether it does; then KeepCheckpoint comes after the exchange
   bool AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted = false) const;
-  /// Replaces the folder's checkpoint, at once or not at all. @throws as Record
+  /// Replaces the folder's checkpoint, as a whole or not at all, while the run goes on: once the records before it are on
+  /// the disk. @throws as Record
   void KeepCheckpoint(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary);
 
   /// Completes all files that can be. @throws std::exception if one could not be written
@@ -77,6 +79,9 @@ class RunOutput {
 
  private:
   void StartThread();
+  bool HasRecorder() const { return bag_ != nullptr || csv_ != nullptr; }
+  /// Of the recorder's thread: completes a checkpoint with what the recorders need, and has it written.
+  void LeaveCheckpoint(train_dynamics::TrainCheckpoint checkpoint);
   /// Does something that writes; if that fails, acts as on_write_error tells.
   template <class Action>
   void Attempt(const Action& action);
@@ -90,7 +95,9 @@ class RunOutput {
   std::exception_ptr error_;   ///< the first, where the run goes on
   std::unique_ptr<BagRecorder> bag_;
   std::unique_ptr<CsvRecorder> csv_;
-  std::unique_ptr<RecorderThread> thread_;  ///< ends before its recorders do
+  std::future<void>
+      to_disk_;  ///< of the last checkpoint; nobody waits for a disk but the next one and the end
+  std::unique_ptr<RecorderThread> thread_;  ///< ends before what it uses does
 };
 
 }  // namespace train_results
