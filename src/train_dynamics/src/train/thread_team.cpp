@@ -3,19 +3,27 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <system_error>
 
 namespace train_dynamics {
 namespace {
 
-constexpr int kSpins = 100000;  // some 0.1 ms: longer than what the caller does between two rounds
+using Clock = std::chrono::steady_clock;
+
+/// What it takes to wake a thread, about, and longer than what the caller does between two rounds.
+constexpr std::chrono::microseconds kSpin{50};
 
 template <class Condition>
 bool Spin(const Condition& done) {
-  for (int i = 0; i < kSpins; ++i) {
-    if (done()) return true;
-  }
+  constexpr int kLooks = 100;  // at the condition for one at the clock
+  const Clock::time_point end = Clock::now() + kSpin;
+  do {
+    for (int i = 0; i < kLooks; ++i) {
+      if (done()) return true;
+    }
+  } while (Clock::now() < end);
   return false;
 }
 
@@ -28,7 +36,7 @@ int UsableCores() {
       1, static_cast<int>(std::thread::hardware_concurrency()));  // more cores than the set has room for
 }
 
-ThreadTeam::ThreadTeam(int size) {
+ThreadTeam::ThreadTeam(int size) : claims_(size) {
   try {
     for (int member = 1; member < size; ++member) threads_.emplace_back(&ThreadTeam::Work, this, member);
   } catch (const std::system_error& e) {
@@ -50,18 +58,42 @@ void ThreadTeam::End() {
 }
 
 void ThreadTeam::Run(const std::function<void(int)>& task) {
-  if (!threads_.empty()) {
+  if (threads_.empty()) {
+    task(0);
+    return;
+  }
+  const Clock::time_point begin = Clock::now();
+  if (faster_.way() == kTogether) {
+    RunTogether(task);
+  } else {
+    for (int member = 0; member < static_cast<int>(claims_.size()); ++member) task(member);
+  }
+  faster_.Took(std::chrono::duration<double>(Clock::now() - begin).count());
+}
+
+void ThreadTeam::RunTogether(const std::function<void(int)>& task) {
+  {
     const std::lock_guard<std::mutex> lock(mutex_);
     task_ = &task;
-    unfinished_ = static_cast<int>(threads_.size());
+    unfinished_ = static_cast<int>(claims_.size());
     ++round_;
     start_.notify_all();
   }
-  task(0);
+  for (int member = 0; member < static_cast<int>(claims_.size()); ++member) Take(member, round_);
   const auto finished = [this] { return unfinished_ == 0; };
   if (Spin(finished)) return;
   std::unique_lock<std::mutex> lock(mutex_);
   finish_.wait(lock, finished);
+}
+
+void ThreadTeam::Take(int member, unsigned round) {
+  unsigned before = round - 1;
+  if (!claims_[member].round.compare_exchange_strong(before, round)) return;
+  (*task_)(member);  // that of this round, which cannot end before
+  if (--unfinished_ == 0) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    finish_.notify_one();
+  }
 }
 
 void ThreadTeam::Work(int member) {
@@ -72,13 +104,9 @@ void ThreadTeam::Work(int member) {
       std::unique_lock<std::mutex> lock(mutex_);
       start_.wait(lock, called);
     }
-    ++seen;
+    seen = round_;
     if (ending_) return;
-    (*task_)(member);
-    if (--unfinished_ == 0) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      finish_.notify_one();
-    }
+    Take(member, seen);
   }
 }
 
