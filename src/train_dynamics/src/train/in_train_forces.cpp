@@ -1,10 +1,37 @@
 #include "train_dynamics/train/in_train_forces.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "train_dynamics/train/snapshot.h"
 
 namespace train_dynamics {
+
+namespace {
+
+/// to[i] = offset[i] + x[i * stride] - x[i * stride + 1]
+template <class Stride>
+void Differences(int count, Stride stride, const double* x, const double* offset, double* to) {
+  for (int i = 0; i < count; ++i) to[i] = offset[i] + (x[i * stride] - x[i * stride + 1]);
+}
+template <class Stride>
+void Differences(int count, Stride stride, const double* x, double* to) {
+  for (int i = 0; i < count; ++i) to[i] = x[i * stride] - x[i * stride + 1];
+}
+
+/// Calls function(stride); with the strides of most trains as constants, over which the compiler forms packs.
+template <class Function>
+void WithStride(int stride, const Function& function) {
+  if (stride == 1) {
+    function(std::integral_constant<int, 1>());
+  } else if (stride == 2) {
+    function(std::integral_constant<int, 2>());
+  } else {
+    function(stride);
+  }
+}
+
+}  // namespace
 
 InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s,
                              const std::vector<int>& external)
@@ -13,7 +40,7 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
   for (const ConnectionParams& type : consist.connection_types) sets_.emplace_back(type);
   for (const int type : consist.connection_type) {
     Set& set = sets_[type];
-    set.place.push_back(static_cast<int>(places_.size()));
+    set.Add(static_cast<int>(places_.size()));
     places_.push_back({type, static_cast<int>(set.place.size()) - 1});
   }
   const auto start_m = [](const Set& set, SlackState state) {
@@ -26,6 +53,20 @@ InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double pr
     Set& set = sets_[places_[c].set];
     if (own) set.Begin(places_[c].at, start_m(set, *own));
   }
+}
+
+void InTrainForces::Set::Add(int at) {
+  if (!rows.empty()) {
+    Row& last = rows.back();
+    if (last.count == 1) last.stride = at - last.place;
+    if (at == last.place + last.stride * last.count) {
+      ++last.count;
+      place.push_back(at);
+      return;
+    }
+  }
+  rows.push_back({static_cast<int>(place.size()), at, 1, 1});
+  place.push_back(at);
 }
 
 void InTrainForces::Set::Begin(double at_m) {
@@ -102,17 +143,21 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
   force_n.resize(places_.size() + 2);
   force_n.front() = force_n.back() = 0.0;
   for (Set& set : sets_) {
-    const std::size_t count = set.place.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const int c = set.place[i];
-      set.rate_mps[i] = head_velocity_mps[c] - head_velocity_mps[c + 1];
+    for (const Row& row : set.rows) {
+      WithStride(row.stride, [&](auto stride) {
+        Differences(row.count, stride, &head_velocity_mps[row.place], &set.rate_mps[row.at]);
+      });
     }
     const auto evaluate = [&](const auto& law) {
       BestConnectionKernels().Of(law).forces(law, prediction_s_, time_s, set.Arrays());
     };
     std::visit(evaluate, set.law);
     if (set.strength_n > 0.0) set.Part(time_s);
-    for (std::size_t i = 0; i < count; ++i) force_n[set.place[i] + 1] = set.force_n[i];
+    for (const Row& row : set.rows) {
+      const double* from = &set.force_n[row.at];
+      double* to = &force_n[row.place + 1];
+      for (int i = 0; i < row.count; ++i) to[i * row.stride] = from[i];
+    }
   }
 }
 
@@ -124,11 +169,11 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
     external.displacement_m = head_displacement_m[i];
   }
   for (Set& set : sets_) {
-    const std::size_t count = set.place.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const int c = set.place[i];
-      set.next_extension_m[i] =
-          set.start_extension_m[i] + (head_displacement_m[c] - head_displacement_m[c + 1]);
+    for (const Row& row : set.rows) {
+      WithStride(row.stride, [&](auto stride) {
+        Differences(row.count, stride, &head_displacement_m[row.place], &set.start_extension_m[row.at],
+                    &set.next_extension_m[row.at]);
+      });
     }
     const auto book = [&](const auto& law) {
       BestConnectionKernels().Of(law).work(law, set.next_extension_m.data(), set.Arrays());
@@ -173,6 +218,8 @@ std::vector<Parting> InTrainForces::Partings() const {
 }
 
 void InTrainForces::AddMemoryTo(Digest& digest) const {
+  const auto remembers = [](const Set& set) { return !set.memory.empty() || set.strength_n > 0.0; };
+  if (std::none_of(sets_.begin(), sets_.end(), remembers)) return;
   MemoryDigest add(digest);
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];

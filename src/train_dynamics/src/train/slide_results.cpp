@@ -71,6 +71,7 @@ void SlideResults::Observe(const TrainRecord& record) {
     if (same != ongoing_.end()) ongoing_.erase(same);
     (event.is_over == 0.0 ? ongoing_ : slides_).push_back(event);
   }
+  if (std::none_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) { return kind.wheelsets > 0; })) return;
   for (std::size_t i = 0; i < kind_.size(); ++i) {
     seen_[i].position_m = record.vehicles.position_m[i];
     std::memcpy(seen_[i].work_j, &record.vehicles.wheelset_work_j[2 * kMostWheelsets * i],

@@ -29,8 +29,8 @@ struct RunHooks {
   std::function<bool()> admits = [] { return true; };
   /// Called right before each exchange, those between an interruption and its checkpoint included: the place for Command.
   std::function<void()> begins = [] {};
-  /// Called after each exchange, with its wall time [s].
-  std::function<void(double)> exchanged = [](double) {};
+  /// Called after each exchange, with its wall time [s], unless it is empty.
+  std::function<void(double)> exchanged;
   /// Called once in each turn of the loop, whether or not there was an exchange.
   std::function<void()> turned = [] {};
 };

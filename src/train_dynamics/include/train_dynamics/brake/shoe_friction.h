@@ -348,13 +348,19 @@ template <class T>
          rigging.hand_brake_n;
 }
 
+/// ShoeForce of a plain rigging.
+template <class T>
+T PlainShoeForce(const BrakeRigging& rigging, T cylinder_pressure_pa, T speed) {
+  return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa *
+         ShoeFriction(rigging.params.shoe_friction, speed);
+}
+
 /// Largest tangential force of all shoes of a vehicle [N]: the load times mu_b(v), and that of the hand brake. It opposes
 /// the wheels' rotation.
 template <class T>
 T ShoeForce(const BrakeRigging& rigging, T cylinder_pressure_pa, T speed) {
-  if (!rigging.is_plain) return ShoeForceByLaw(rigging, cylinder_pressure_pa, speed);
-  return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa *
-         ShoeFriction(rigging.params.shoe_friction, speed);
+  return rigging.is_plain ? PlainShoeForce(rigging, cylinder_pressure_pa, speed)
+                          : ShoeForceByLaw(rigging, cylinder_pressure_pa, speed);
 }
 
 }  // namespace train_dynamics

@@ -22,6 +22,10 @@ class Steps {
   /// @param without_steps   the value everywhere if there are none
   Steps(const std::vector<StepValue>& steps, double without_steps);
 
+  /// Whether it has one value everywhere, `First`.
+  bool IsConstant() const { return values_.size() == 1; }
+  double First() const { return values_.front(); }
+
   /// A value and where it holds.
   struct Held {
     Stretch on;

@@ -183,6 +183,7 @@ bool AllOn(const Stretch& stretch, const T& position_m) {
 /// A quantity that is constant in steps, for one vehicle or for several side by side.
 template <class T>
 T ValueUnder(const Steps& steps, const T& position_m) {
+  if (steps.IsConstant()) return T(steps.First());
   const Steps::Held first = steps.From(FirstLane(position_m));
   if (AllOn(first.on, position_m)) return T(first.value);
   constexpr int kLanes = kLanesOf<T>;

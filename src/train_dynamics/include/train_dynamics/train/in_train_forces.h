@@ -75,9 +75,17 @@ class InTrainForces {
   void SetMemory(const std::vector<double>& memory);
 
  private:
+  /// Connections of one type, at equal distances in the train.
+  struct Row {
+    int at;     ///< the first, in its set
+    int place;  ///< the first, in the train
+    int stride, count;
+  };
   /// The connections of one type, side by side, filled up to whole packs of lanes.
   struct Set {
     explicit Set(const ConnectionParams& params) : law(params.Law()), strength_n(params.strength_n) {}
+    /// Appends a connection of the train.
+    void Add(int place);
     /// Puts all connections to this extension, without force.
     void Begin(double extension_m);
     /// Puts one of them to another extension, likewise.
@@ -91,6 +99,7 @@ class InTrainForces {
     ConnectionLaw law;
     double strength_n;
     std::vector<int> place;  ///< [connection of the set] in the train
+    std::vector<Row> rows;   ///< the same
     std::vector<double> start_extension_m, next_extension_m;
     std::vector<double> rate_mps, extension_m, force_n, elastic_n;
     std::vector<double> memory;  ///< of the law, [field][connection]

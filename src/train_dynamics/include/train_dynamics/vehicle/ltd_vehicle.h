@@ -91,6 +91,15 @@ template <class T>
 void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output = nullptr);
 
+/// Whether a vehicle on a track has only what most have: shoes of plain rigging, no limit of adhesion, one grade.
+inline bool IsPlain(const LtdVehicle& vehicle, const Track& track) {
+  return vehicle.brake_rigging.is_plain && !vehicle.adhesion_limit && track.grades().IsConstant();
+}
+/// StepLtd, of which kAll = false leaves out what plain vehicles do not have, at the same bits.
+template <bool kAll, class T>
+void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
+                 LtdState<T>& s, LtdOutput<T>* output);
+
 /// Displacement of the coupler heads since the start [m]: the vehicle's own, which is rigid.
 template <class T>
 T CouplerHeadDisplacement(const LtdVehicle& /*vehicle*/, const LtdState<T>& s) {
@@ -128,16 +137,24 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 template <class T>
 void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
              LtdState<T>& s, LtdOutput<T>* output) {
+  StepLtdWith<true>(vehicle, track, loads, dt, s, output);
+}
+
+template <bool kAll, class T>
+void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
+                 LtdState<T>& s, LtdOutput<T>* output) {
   const T v0 = s.v_mps;
   const double drift = vehicle.integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
   s.x_m = s.x_m + drift * v0;
 
-  const T gravity = -vehicle.weight_n * GradeUnder(track, s.origin_m + s.x_m);
-  T shoes = ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
+  const T grade = kAll ? GradeUnder(track, s.origin_m + s.x_m) : T(track.grades().First());
+  const T gravity = -vehicle.weight_n * grade;
+  T shoes = kAll ? ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0)
+                 : PlainShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
   T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
   T dynamic_brake = loads.dynamic_brake_n, traction = loads.traction_n;
   const T curving = loads.curving_resistance_n;  // at the flanges: it takes nothing of the adhesion
-  if (vehicle.adhesion_limit) {
+  if (kAll && vehicle.adhesion_limit) {
     const T most = vehicle.limit_n * RailSurfaceUnder(track, s.origin_m + s.x_m, vehicle.adhesion).friction;
     const T share = Min(T(1.0), most / Max(T(1e-300), shoes + dynamic_brake + rolling));
     shoes = share * shoes;

@@ -26,13 +26,23 @@ void CylinderGaps(const BrakePhases& phases, double time_s, double dt_s, int cou
 }
 
 template <class T>
-void CloseCylinderGaps(int steps, int count, const GapArrays& at, double* pressure_pa) {
-  for (int i = 0; i < count; i += kLanesOf<T>) {
-    T gap = Load<T>(at.gap_pa + i);
-    for (int step = 0; step < steps; ++step) gap = gap * Load<T>(at.decay + i);
-    Store(gap, at.gap_pa + i);
-    Store(Load<T>(at.target_pa + i) + gap, pressure_pa + i);
+void CloseCylinderGaps(int steps, int count, const GapArrays& arrays, double* pressure_pa) {
+  const GapArrays at = arrays;  // a copy that no store can change
+  const auto close = [&](const auto& advanced) {
+    for (int i = 0; i < count; i += kLanesOf<T>) {
+      const T gap = advanced(Load<T>(at.gap_pa + i), Load<T>(at.decay + i));
+      Store(gap, at.gap_pa + i);
+      Store(Load<T>(at.target_pa + i) + gap, pressure_pa + i);
+    }
+  };
+  if (steps == 2) {  // from the middle of one exchange to that of the next
+    close([](T gap, T decay) { return gap * decay * decay; });
+    return;
   }
+  close([steps](T gap, T decay) {
+    for (int step = 0; step < steps; ++step) gap = gap * decay;
+    return gap;
+  });
 }
 
 template <class T>

@@ -18,7 +18,7 @@ void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const Vehicl
 template <bool kAll, class T>
 void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
-  StepLtd(vehicle, track, loads, dt, state, output);
+  StepLtdWith<kAll>(vehicle, track, loads, dt, state, output);
 }
 
 template <class T, class Vehicle>
@@ -48,7 +48,6 @@ template <int kPerBogie>
 bool IsPlain(const BogieVehicle<kPerBogie>& wagon, const Track& track) {
   return wagon.IsPlain() && track.IsPlain();
 }
-inline bool IsPlain(const LtdVehicle& /*vehicle*/, const Track& /*track*/) { return true; }
 
 /// Whether a load that few trains have is given.
 template <class T>
@@ -81,8 +80,8 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
 
 /// @tparam kAll  with the loads that few trains have, and with what a plain vehicle or a plain track does not have
 template <class T, bool kAll, class Vehicle>
-[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
-                                     int packs, const LoadPlaces& load_places,
+[[gnu::flatten]] bool StepPacksUnder(const Vehicle& __restrict vehicle, const Track& __restrict track,
+                                     double dt, int steps, int packs, const LoadPlaces& load_places,
                                      const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
