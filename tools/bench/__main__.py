@@ -17,7 +17,7 @@ import targets
 import workspace
 from table import Table, as_text
 
-SECTIONS = ["vehicles", "runs", "scaling", "exchange", "graph", "intervals", "limit"]
+SECTIONS = ["vehicles", "runs", "scaling", "features", "exchange", "graph", "intervals", "limit"]
 RESULTS = workspace.ROOT / "results" / "bench"
 
 

@@ -42,9 +42,12 @@ def run():
     starts = Table("nodes; launch [s]", columns, [
         ("until the run begins", *[number(ends[ranks][0]) for ranks in EXCHANGES]),
         ("from its end to that of roslaunch", *[number(ends[ranks][1]) for ranks in EXCHANGES])])
-    to_mpi = _to_mpi(cost, PAIRED, workspace.VEHICLES)
-    return [table, starts], {"to_mpi_242": to_mpi and measure.median(to_mpi),
-                             "242_ms": _ms(cost[PAIRED, workspace.VEHICLES])}
+    facts = {"242_ms": _ms(cost[PAIRED, workspace.VEHICLES])}
+    for way, name in ((PAIRED, "to_mpi"), ("TCP", "tcp_to_mpi")):
+        for ranks in EXCHANGES:
+            ratios = _to_mpi(cost, way, ranks)
+            facts[f"{name}_{ranks}"] = ratios and measure.median(ratios)
+    return [table, starts], facts
 
 
 def _in_turn(ranks, launches, mpi):

@@ -8,32 +8,53 @@ TARGETS = [
     ("the same with all wheels locked", "vehicles", "locked_ns", 450, "ns per vehicle-step"),
     ("pneumatic brake, share of a 2D train's step", "vehicles", "pneumatic_share", 15, "%"),
     ("pneumatic brake alone, share of real time", "vehicles", "pneumatic_of_real_time", 5, "%"),
-    ("emergency stop with its bag, 2D, one thread", "runs", "2d_1_wall_s", 4.0, "s"),
-    ("emergency stop with its bag, 2D, all cores", "runs", "2d_{cores}_wall_s", 2.3, "s"),
-    ("emergency stop with its bag, LTD, one thread", "runs", "ltd_1_wall_s", 0.15, "s"),
-    ("share of recording, 2D, one thread", "runs", "2d_1_recording", 5, "%"),
-    ("share of recording, 2D, all cores", "runs", "2d_{cores}_recording", 5, "%"),
-    ("ROS, one rank per core: overhead of an exchange", "graph", "overhead_ms", 0.2, "ms"),
-    ("ROS, one rank per core: emergency stop with its bag", "graph", "ranks_wall_s", 20, "s"),
-    ("ROS, 242 ranks: an exchange against MPI", "exchange", "to_mpi_242", 1.5, "x"),
-    ("ROS, 242 ranks, interval 5 ms: emergency stop", "graph", "every_vehicle_wall_s", 272, "s"),
-    ("cost per vehicle from 50 to 2000 vehicles, 2D", "scaling", "2d_spread", 20, "%"),
-    ("cost per vehicle from 50 to 2000 vehicles, LTD", "scaling", "ltd_spread", 20, "%"),
+    ("a wagon's step against the machine's limit", "limit", "to_limit", 1.9, "x"),
+    ("emergency stop with its bag, 2D, one thread", "runs", "2d_1_wall_s", 1.8, "s"),
+    ("emergency stop with its bag, 2D, all cores", "runs", "2d_{cores}_wall_s", 1.4, "s"),
+    ("emergency stop with its bag, LTD, one thread", "runs", "ltd_1_wall_s", 0.12, "s"),
+    ("share of recording, 2D, one thread", "runs", "2d_1_recording", 3, "%"),
+    ("share of recording, 2D, all cores", "runs", "2d_{cores}_recording", 3, "%"),
+    ("all threads against one, beside one busy core", "features", "threads_beside_1", 1.1, "x"),
+    ("ROS, one rank per core: overhead of an exchange", "graph", "overhead_ms", 0.05, "ms"),
+    ("ROS, one rank per core: emergency stop with its bag", "graph", "ranks_wall_s", 4.0, "s"),
+    *[(f"ROS, {ranks} ranks: an exchange against MPI", "exchange", f"to_mpi_{ranks}", 1.0, "x") for ranks in (2, 8, 22)],
+    ("ROS, 242 ranks: an exchange against MPI", "exchange", "to_mpi_242", 0.64, "x"),
+    ("ROS, 242 ranks by TCP: an exchange against MPI", "exchange", "tcp_to_mpi_242", 2.5, "x"),
+    ("ROS, 242 ranks: an exchange of 1 ms", "exchange", "242_ms", 1.0, "ms"),
+    ("ROS, 242 ranks, interval 5 ms: emergency stop", "graph", "every_vehicle_wall_s", 70, "s"),
+    ("cost per vehicle from 50 to 2000 vehicles, 2D", "scaling", "2d_spread", 15, "%"),
+    ("cost per vehicle from 50 to 2000 vehicles, LTD", "scaling", "ltd_spread", 15, "%"),
+    ("grades add to 2D", "features", "grades_ns", 5, "ns per vehicle-step"),
+    ("patches of friction add to 2D", "features", "patches_ns", 30, "ns per vehicle-step"),
+    ("a dip adds to 2D", "features", "dips_ns", 30, "ns per vehicle-step"),
+    ("wheel-slide protection adds to 2D", "features", "protected_ns", 40, "ns per vehicle-step"),
+    ("damped_stick gears add to 2D", "features", "gears_ns", 10, "ns per vehicle-step"),
+    ("the pneumatic brake adds to 2D", "features", "pipe_ns", 60, "ns per vehicle-step"),
+    ("grades add to LTD", "features", "ltd_grades_ns", 3, "ns per vehicle-step"),
+    ("damped_stick gears add to LTD", "features", "ltd_gears_ns", 10, "ns per vehicle-step"),
+    ("the pneumatic brake adds to LTD", "features", "ltd_pipe_ns", 60, "ns per vehicle-step"),
 ]
 
 # By fact, why its target was missed where it was; places as in performance.md.in.
 RECORDING = """the recorder's thread works {vehicles.bag_us} us for a record, and recording adds
-{runs.2d_{cores}_recording_cpu %} to the CPU time of the run: the 13 kB of a record are copied three times (into the
-queue, into messages, into the open chunk) and by the kernel once more (into its page cache), and checkpoints need a
-digest of the bag. With a thread of the run on every core, the recorder's takes its time from one of them, and the
-others wait for that one at the barrier of the step."""
+{runs.2d_{cores}_recording_cpu %} to the CPU time of the run: the numbers of a record are copied into the queue,
+converted into the open chunk and copied by the kernel into its page cache, and checkpoints need a digest of the bag. With
+a thread of the run on every core, the recorder's takes its time from one of them, and the others wait for that one at the
+barrier of the step."""
+RANKS = """with many ranks on a core an exchange is bound by changes between processes, one for each rank and exchange
+beside its system call, as it is over MPI; with few, by the time that a sleeping rank takes to wake up
+([lockstep.md](lockstep.md#memory-in-common))."""
 SPREAD = """an exchange costs about {scaling.{model}_fixed_us} us however short the train is, and 50 vehicles fill
 {scaling.lanes_of_the_last_pack} of the {scaling.lanes} lanes of their last pack, which takes as long as a full one."""
 REASONS = {
     "ltd_1_wall_s": """couplers take {vehicles.ltd_share_of_couplers %} of an exchange, the vehicles themselves
-{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear has two exponentials and two
+{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and two
 divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
     "2d_{cores}_recording": RECORDING,
+    "2d_1_recording": RECORDING,
+    "to_limit": """a wagon has more in flight than any set of registers holds, so that most of its instructions move numbers
+([below](#how-far-from-the-machines-limit)); instructions alone take {limit.issue_share %} of the time.""",
+    **{fact: RANKS for fact in ("to_mpi_2", "to_mpi_8", "to_mpi_22", "to_mpi_242", "tcp_to_mpi_242", "242_ms")},
     "2d_spread": SPREAD.replace("{model}", "2d"),
     "ltd_spread": SPREAD.replace("{model}", "ltd"),
 }
