@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "paper_vehicle.h"
+#include "train_dynamics/coupler/row_kernels.h"
 
 namespace train_dynamics {
 namespace {
@@ -67,6 +68,30 @@ std::vector<ConnectionParams> AllConnections() {
   all.push_back(LoadPart<ConnectionParams>("couplers/calibrated.yaml"));
   all.back().draft_gear.friction = DraftGearFriction::kStickSpring;
   return all;
+}
+
+TEST(RowKernels, TakeFromTheTrainAndGiveToIt) {
+  for (const RowKernels& kernels : AllRowKernels()) {
+    for (const int stride : {1, 2, 3}) {
+      for (const int count : {1, 2, 7, 8, 33}) {
+        std::vector<double> x, offset;
+        for (int i = 0; i <= count * stride; ++i) x.push_back(std::sin(1.0 + i));
+        for (int i = 0; i < count; ++i) offset.push_back(1e3 * std::cos(i));
+        std::vector<double> difference(count), sum(count), spread(count * stride + 1, -7.0),
+            expected = spread;
+        kernels.differences(count, stride, x.data(), difference.data());
+        kernels.offset_differences(count, stride, x.data(), offset.data(), sum.data());
+        kernels.spread(count, stride, offset.data(), spread.data());
+        for (int i = 0; i < count; ++i) {
+          const double between = x[i * stride] - x[i * stride + 1];
+          EXPECT_EQ(between, difference[i]);
+          EXPECT_EQ(offset[i] + between, sum[i]);
+          expected[i * stride] = offset[i];
+        }
+        EXPECT_EQ(expected, spread) << stride << " " << count;
+      }
+    }
+  }
 }
 
 TEST(ConnectionKernels, EveryInstructionSetGivesTheBitsOfTheScalarLaw) {

@@ -1,37 +1,11 @@
 #include "train_dynamics/train/in_train_forces.h"
 
 #include <algorithm>
-#include <type_traits>
 
+#include "train_dynamics/coupler/row_kernels.h"
 #include "train_dynamics/train/snapshot.h"
 
 namespace train_dynamics {
-
-namespace {
-
-/// to[i] = offset[i] + x[i * stride] - x[i * stride + 1]
-template <class Stride>
-void Differences(int count, Stride stride, const double* x, const double* offset, double* to) {
-  for (int i = 0; i < count; ++i) to[i] = offset[i] + (x[i * stride] - x[i * stride + 1]);
-}
-template <class Stride>
-void Differences(int count, Stride stride, const double* x, double* to) {
-  for (int i = 0; i < count; ++i) to[i] = x[i * stride] - x[i * stride + 1];
-}
-
-/// Calls function(stride); with the strides of most trains as constants, over which the compiler forms packs.
-template <class Function>
-void WithStride(int stride, const Function& function) {
-  if (stride == 1) {
-    function(std::integral_constant<int, 1>());
-  } else if (stride == 2) {
-    function(std::integral_constant<int, 2>());
-  } else {
-    function(stride);
-  }
-}
-
-}  // namespace
 
 InTrainForces::InTrainForces(const Consist& consist, SlackState slack, double prediction_s,
                              const std::vector<int>& external)
@@ -142,11 +116,10 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
                              std::vector<double>& force_n) {
   force_n.resize(places_.size() + 2);
   force_n.front() = force_n.back() = 0.0;
+  const RowKernels& rows = BestRowKernels();
   for (Set& set : sets_) {
     for (const Row& row : set.rows) {
-      WithStride(row.stride, [&](auto stride) {
-        Differences(row.count, stride, &head_velocity_mps[row.place], &set.rate_mps[row.at]);
-      });
+      rows.differences(row.count, row.stride, &head_velocity_mps[row.place], &set.rate_mps[row.at]);
     }
     const auto evaluate = [&](const auto& law) {
       BestConnectionKernels().Of(law).forces(law, prediction_s_, time_s, set.Arrays());
@@ -154,14 +127,13 @@ void InTrainForces::Evaluate(double time_s, const std::vector<double>& head_velo
     std::visit(evaluate, set.law);
     if (set.strength_n > 0.0) set.Part(time_s);
     for (const Row& row : set.rows) {
-      const double* from = &set.force_n[row.at];
-      double* to = &force_n[row.place + 1];
-      for (int i = 0; i < row.count; ++i) to[i * row.stride] = from[i];
+      rows.spread(row.count, row.stride, &set.force_n[row.at], &force_n[row.place + 1]);
     }
   }
 }
 
 void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m) {
+  const RowKernels& rows = BestRowKernels();
   for (External& external : external_) {
     const int i = external.vehicle;
     const double pull_n = (i > 0 ? ForceOf(i - 1) : 0.0) - (i < connections() ? ForceOf(i) : 0.0);
@@ -170,10 +142,8 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
   }
   for (Set& set : sets_) {
     for (const Row& row : set.rows) {
-      WithStride(row.stride, [&](auto stride) {
-        Differences(row.count, stride, &head_displacement_m[row.place], &set.start_extension_m[row.at],
-                    &set.next_extension_m[row.at]);
-      });
+      rows.offset_differences(row.count, row.stride, &head_displacement_m[row.place],
+                              &set.start_extension_m[row.at], &set.next_extension_m[row.at]);
     }
     const auto book = [&](const auto& law) {
       BestConnectionKernels().Of(law).work(law, set.next_extension_m.data(), set.Arrays());

@@ -74,8 +74,7 @@ void SlideResults::Observe(const TrainRecord& record) {
   if (std::none_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) { return kind.wheelsets > 0; })) return;
   for (std::size_t i = 0; i < kind_.size(); ++i) {
     seen_[i].position_m = record.vehicles.position_m[i];
-    std::memcpy(seen_[i].work_j, &record.vehicles.wheelset_work_j[2 * kMostWheelsets * i],
-                sizeof seen_[i].work_j);
+    std::memcpy(seen_[i].work_j, &(*record.wheelset_work_j)[2 * kMostWheelsets * i], sizeof seen_[i].work_j);
   }
   if (deposited_.empty()) deposited_ = seen_;
   for (std::size_t i = 0; i < kind_.size(); ++i) {

@@ -267,6 +267,7 @@ void TrainMaster::ShowRecord() {
   record.state_digest = digest_;
   record.given = given_;
   given_.clear();
+  record.wheelset_work_j = &reply_.wheelset_work_j;
   record.ledger.reset();
   if (request_.ledger) record.ledger = MakeEnergyLedger(time_s(), reply_.energy, forces_.Energy());
   if (exchange_ == 0) record.at_time_zero = {record.mean_position_m, record.ledger->Stored()};

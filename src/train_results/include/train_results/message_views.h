@@ -6,9 +6,12 @@
 #include <train_brake_msgs/InTrainForces.h>
 #include <train_brake_msgs/TrainState.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "train_dynamics/brake/pneumatic/brake_record.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
@@ -91,9 +94,15 @@ struct Serializer<train_results::ArrayView<To, From>> {
   static void write(Stream& stream, const train_results::ArrayView<To, From>& view) {
     stream.next(static_cast<std::uint32_t>(view.count));
     std::uint8_t* to = stream.advance(static_cast<std::uint32_t>(view.count * sizeof(To)));
-    for (std::size_t i = 0; i < view.count; ++i) {
-      const To value = static_cast<To>(view.from[i]);
-      std::memcpy(to + i * sizeof(To), &value, sizeof value);
+    if constexpr (std::is_same_v<To, From>) {
+      if (view.count > 0) std::memcpy(to, view.from, view.count * sizeof(To));
+    } else {
+      std::array<To, 64> block;  // converted in packs, then copied to where there is no alignment
+      for (std::size_t first = 0; first < view.count; first += block.size()) {
+        const std::size_t count = std::min(block.size(), view.count - first);
+        for (std::size_t i = 0; i < count; ++i) block[i] = static_cast<To>(view.from[first + i]);
+        std::memcpy(to + first * sizeof(To), block.data(), count * sizeof(To));
+      }
     }
   }
   static std::uint32_t serializedLength(const train_results::ArrayView<To, From>& view) {

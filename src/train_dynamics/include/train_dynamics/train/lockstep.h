@@ -57,8 +57,6 @@ struct VehicleFault {
 struct VehicleRecords : RecordArrays {
   std::vector<std::uint64_t> state_digest;  ///< [vehicle]
   std::vector<WagonDetail> details;         ///< filled by the rank that has the vehicle
-  /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none
-  std::vector<double> wheelset_work_j;
 
   VehicleRecords() = default;
   /// @param detailed  indices of the vehicles to be recorded in full detail
@@ -71,6 +69,9 @@ struct ExchangeReply : ReplyArrays, VehicleRecords {
   std::vector<VehicleEnergy> energy;  ///< with a ledger
   std::vector<StateRow> snapshot;     ///< see VehicleBlock::Save
   std::vector<SlideEvent> slides;     ///< with a record: see VehicleBlock::TellSlides
+  /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none; with a
+  /// record
+  std::vector<double> wheelset_work_j;
 
   /// @param detailed  indices of the vehicles to be recorded in full detail
   ExchangeReply(int vehicles, const std::vector<int>& detailed);

@@ -35,8 +35,10 @@ struct TrainRecord {
   BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
   std::optional<EnergyLedger> ledger;        ///< where one is due
-  std::vector<GivenCommand> given;           ///< since the record before
-  TimeZero at_time_zero;                     ///< of the run, also where it was resumed later
+  /// ExchangeReply::wheelset_work_j, while the record is shown: copies of it are for recorders, which have no use for that.
+  const std::vector<double>* wheelset_work_j = nullptr;
+  std::vector<GivenCommand> given;  ///< since the record before
+  TimeZero at_time_zero;            ///< of the run, also where it was resumed later
 };
 
 /// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.

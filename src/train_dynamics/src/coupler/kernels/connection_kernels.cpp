@@ -1,6 +1,7 @@
 #include "train_dynamics/coupler/connection_kernels.h"
 
 #include "connection_laws.h"
+#include "train_dynamics/coupler/row_kernels.h"
 
 namespace train_dynamics {
 
@@ -11,6 +12,17 @@ const std::vector<ConnectionKernels>& AllConnectionKernels() {
 #else
   static const std::vector<ConnectionKernels> kernels =
       RunnableKernels<ConnectionKernels>(nullptr, nullptr, kBaseConnectionKernels, kScalarConnectionKernels);
+#endif
+  return kernels;
+}
+
+const std::vector<RowKernels>& AllRowKernels() {
+#if defined(TRAIN_BRAKE_X86_KERNELS)
+  static const std::vector<RowKernels> kernels =
+      RunnableKernels(&kAvx512RowKernels, &kAvx2RowKernels, kBaseRowKernels, kScalarRowKernels);
+#else
+  static const std::vector<RowKernels> kernels =
+      RunnableKernels<RowKernels>(nullptr, nullptr, kBaseRowKernels, kScalarRowKernels);
 #endif
   return kernels;
 }
