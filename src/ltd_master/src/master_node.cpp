@@ -92,7 +92,7 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.output.on_write_error = parameters.IsFirstOf("on_write_error", "stop", "go_on")
                                       ? train_results::OnWriteError::kStop
                                       : train_results::OnWriteError::kGoOn;
-  options.output.complain = [](const std::string& what) { ROS_ERROR("%s", Presentable(what).c_str()); };
+  options.output.complain = [](const std::string& what) { ROS_WARN("%s", Presentable(what).c_str()); };
   options.real_time_factor = parameters.NonNegative("real_time_factor", 0.0);
   options.start_paused = parameters.Flag("start_paused", false);
   options.startup_timeout_s = parameters.NonNegative("startup_timeout_s", 60.0);

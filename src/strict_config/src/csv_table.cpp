@@ -85,6 +85,16 @@ class CsvLines {
   /// Whether the quotes of the line are wrong, which has been reported.
   bool is_bad() const { return is_bad_; }
 
+  /// Whether the line has too many cells because commas separate both cells and decimals: "0,5,100,25" in two columns.
+  bool HasDecimalCommas(std::size_t columns) const {
+    const auto is_whole = [](const std::string& cell) {
+      const std::size_t first = cell.find_first_not_of("+-");
+      return first != std::string::npos && cell.find_first_not_of("0123456789", first) == std::string::npos;
+    };
+    return separator_ == ',' && cells_.size() > columns && cells_.size() <= 2 * columns &&
+           std::all_of(cells_.begin(), cells_.end(), is_whole);
+  }
+
   int line() const { return line_; }
   const std::vector<std::string>& cells() const {
     return cells_;
@@ -185,9 +195,11 @@ bool ReadRows(const std::string& file, CsvTable& table, ErrorList& errors, const
       continue;
     }
     const std::string more = cells.size() > CsvLimits::kColumns ? "more than " : "";
+    const std::string hint =
+        lines.HasDecimalCommas(columns) ? "; decimals take a point, or a table another separator (';')" : "";
     errors.Add(table.file, lines.line(), "",
                "has " + more + std::to_string(std::min(cells.size(), CsvLimits::kColumns)) +
-                   " values, but the header names " + std::to_string(columns) + " columns");
+                   " values, but the header names " + std::to_string(columns) + " columns" + hint);
   }
   return rows > 0;
 }

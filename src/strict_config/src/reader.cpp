@@ -57,6 +57,20 @@ bool HasControlCharacter(const std::string& text) {
   return false;
 }
 
+/// Why a number cannot be what its key says; empty: it can.
+std::string Doubt(const std::string& key, const std::string& path, double number,
+                  const std::function<Range(const std::string& path)>& plausible_size) {
+  if (!plausible_size || number == 0.0) return "";
+  const Range size = plausible_size(path);
+  if (size.Contains(std::fabs(number))) return "";
+  const bool is_large = std::fabs(number) > size.min;
+  const std::string unit = SplitUnit(key).unit;
+  return "must be " + std::string(is_large ? "at most " : "at least ") +
+         ShortestDecimal(is_large ? size.max : size.min) + (unit.empty() ? "" : " " + unit) +
+         " in size: no train has " + (is_large ? "more" : "less") +
+         (unit.empty() ? "" : "; is it in " + unit + "?");
+}
+
 /// A map that holds the reference to a table under a key.
 NodePtr AsMap(const NodePtr& reference, const char* table_key) {
   auto map = std::make_shared<Node>();
@@ -250,7 +264,12 @@ std::optional<double> Reader::ReadNumber(const Value& value, const char* key, co
   const Node& node = *value.node;
   const bool is_scalar = node.kind == Node::Kind::kScalar;
   const std::optional<double> number = is_scalar && !node.quoted ? ParseNumber(node.text) : std::nullopt;
-  if (number && range.Contains(*number)) return number;
+  if (number && range.Contains(*number)) {
+    const std::string doubt = Doubt(key, Path(key).text, *number, session_.plausible_size);
+    if (doubt.empty()) return number;
+    node.source.Report(session_.errors, value.path, doubt + ", got " + Describe(node));
+    return std::nullopt;
+  }
   const std::string rule = number      ? range.Rule()
                            : is_scalar ? NumberRule(node.text, node.quoted, key)
                                        : "must be a number";
@@ -444,6 +463,7 @@ KeyPath Reader::Path(const std::string& key) const {
 Reader::Place Reader::RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options,
                                 const char* table_key) {
   Place place;
+  session.plausible_size = options.plausible_size;
   place.path = options.root_name;
   if (table_key != nullptr && std::filesystem::path(file).extension() == ".csv") {
     auto reference = std::make_shared<Node>();

@@ -144,6 +144,8 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
   lock_.emplace(folder_);
   if (HasMark(folder_) && fs::exists(folder_ / kCheckpointFile) && !fs::exists(folder_ / "summary.json")) {
     options.complain(folder_.string() + " held a run that was broken off; it is replaced (--resume goes on)");
+  } else if (HasMark(folder_) && fs::exists(folder_ / "summary.json")) {
+    options.complain(folder_.string() + " held the results of a run, which are replaced");
   }
   ClearFolder(folder_);
   WriteResolvedConfig(scenario, folder_);

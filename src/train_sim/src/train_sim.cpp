@@ -80,6 +80,21 @@ void RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
                               " Commands: " + strict_config::Join(known, known.size()));
 }
 
+/// Lines with the likely option for each unknown one; empty: there is none.
+std::string HintsForOptions(const CLI::App& app) {
+  std::string hints;
+  for (const CLI::App* command : app.get_subcommands()) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command->get_options()) names.push_back(option->get_name());
+    for (const std::string& word : command->remaining()) {
+      const std::string name = word.substr(0, word.find('='));
+      const std::string nearest = name.rfind("--", 0) == 0 ? strict_config::Nearest(name, names) : "";
+      if (!nearest.empty()) hints += name + ": did you mean " + nearest + "?\n";
+    }
+  }
+  return hints;
+}
+
 int Main(int argc, char** argv) {
   train_sim::RunOptions options;
   std::string vehicle;
@@ -228,6 +243,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     std::ostringstream output, complaint;
     const int code = app.exit(e, output, complaint);
+    complaint << HintsForOptions(app);
     train_console::Print("{}", output.str());
     train_console::Tell("{}", complaint.str());
     return code == 0 ? train_run::kSuccess : train_run::kBadInput;

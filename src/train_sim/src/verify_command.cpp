@@ -48,6 +48,8 @@ fs::path BagOf(const fs::path& recording) {
   throw train_results::UnreadableBag("the folder holds no train.bag");
 }
 
+constexpr std::size_t kLargestConfig = 1 << 26;
+
 fs::path FolderOf(const fs::path& recording) {
   return fs::is_directory(recording) ? recording : recording.parent_path();
 }
@@ -63,7 +65,16 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   if (!options.config.empty()) return LoadScenario(options.config, {});
   const fs::path beside = FolderOf(options.recording) / "config.yaml";
   const std::optional<std::string> within = recorded.Scenario();
-  if (within && !(IsOfARun(options.recording) && fs::exists(beside))) {
+  // A folder's config.yaml may name files beside it, which a bag cannot hold, so it is taken, if it is still the run's. (The bag of a
+  // branch begins with what the other run had.)
+  const bool is_beside = IsOfARun(options.recording) && fs::exists(beside);
+  const bool is_branch = fs::exists(FolderOf(options.recording) / train_results::kBranchFile);
+  if (within && is_beside && !is_branch && *within != train_results::ReadPlainFile(beside, kLargestConfig)) {
+    train_console::Tell("warning: {} is not the scenario that the bag holds, which is repeated\n",
+                        beside.string());
+    return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
+  }
+  if (within && !is_beside) {
     return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
   }
   if (fs::exists(beside)) return LoadScenario(beside.string(), {});

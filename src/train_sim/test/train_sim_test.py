@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -206,6 +207,87 @@ class TrainSimTest(unittest.TestCase):
         self.assertAlmostEqual(ltd["final_speed_kmh"]["mean"], again["final_speed_kmh"]["mean"], delta=1e-6)
         resolved = self.run_ok(pathlib.Path(str(self.out) + "2") / "config.yaml")
         self.assertEqual(again["state_digest"], resolved["state_digest"])
+
+    def test_values_in_another_unit_are_refused(self):
+        """Whatever key has a unit: a thousand times too much or too little is no train's."""
+        vehicle, gear = "train.consist[0].vehicle", "train.connection.draft_gear"
+        wrong = [("brake.emergency.cylinder_pressure_kpa", 430e3), ("brake.emergency.wave_speed_mps", 0.25),
+                 ("brake.service.reduction_kpa[0]", 0.05), (f"{gear}.slack_m", 10), (f"{gear}.travel_m", 83),
+                 (f"{gear}.preload_n", 18.8), (f"{gear}.spring_stiffness_n_per_m", 40e3),
+                 (f"{vehicle}.wheelset.mass_kg", 1.73), (f"{vehicle}.carbody.mass_kg", 147.6), (f"{vehicle}.length_m", 10.5e3),
+                 (f"{vehicle}.propulsion_resistance.constant_n_per_kn", 920), (f"{vehicle}.coupler_height_m", 850),
+                 (f"{vehicle}.wheel_rail.hertz.youngs_modulus_pa", 208), (f"{vehicle}.spring_nest.outer_stiffness_n_per_m", 1590),
+                 (f"{vehicle}.wheelset.pitch_inertia_kgm2", 679e3), (f"{vehicle}.wheel_rail.shear_modulus_pa", 84e3)]
+        done = train_sim("check", EMERGENCY, *(word for path, value in wrong for word in ("--set", f"{path}={value}")))
+        self.assertEqual(2, done.returncode)
+        for path, value in wrong:
+            self.assertRegex(done.stderr, rf"\n?.*: {re.escape(path)} must be at (most|least) [\d.e+]+ .* in size: no train has ", path)
+        self.assertIn("carbody.mass_kg must be at least 500 kg in size: no train has less; is it in kg?, got 147.6", done.stderr)
+        for radius in ("1e-154", "460", "0.0485"):
+            done = train_sim("check", EMERGENCY, "--model", "ltd", "--set", f"{vehicle}.wheelset.wheel_radius_m={radius}")
+            self.assertEqual(2, done.returncode)
+            self.assertIn("wheel_radius_m must be at ", done.stderr)
+
+    def test_pressure_tables_that_do_not_cover_the_run_are_told(self):
+        table = self.write("table.csv", "time_s,vehicle_1_pa,vehicle_2_pa,note_x\n0.1,0,0,1\n0.3,50000,0,1\n")
+        done = train_sim("check", DIP, "--set", f"pressure_table={table}")
+        self.assertEqual(0, done.returncode, done.stderr)
+        self.assertIn("table.csv: begins at 0.1 s: until then the pressures of its first row hold", done.stderr)
+        self.assertRegex(done.stderr, r"table.csv: ends at 0.3 s of [\d.]+ s: from then on the pressures of its last row hold")
+        self.assertIn("table.csv: 2 of its columns are not used: the train has 1 vehicle\n", done.stderr)
+        table.write_text("time_s,vehicle_1_pa\n0,0\n100,50000\n")
+        self.assertNotIn("table.csv", train_sim("check", DIP, "--set", f"pressure_table={table}").stderr)
+
+    def test_errors_of_pressure_tables_are_few_and_name_their_rows(self):
+        six = self.write("six.yaml", "base: emergency\nmodel: ltd\nduration_s: 1\ndetail_vehicles: []\nbrake: single_vehicle\n"
+                         "train: {name: six, connection: calibrated, consist: [{vehicle: ore_wagon, count: 60}]}\n")
+        table = self.write("table.csv", "time_s,vehicle_1_pa\n0,0\n")
+        done = train_sim("check", six, "--set", f"pressure_table={table}")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("table.csv:1: has no columns vehicle_2_pa, vehicle_3_pa, vehicle_4_pa, ...: of 60 vehicles 59 have no pressures",
+                      done.stderr)
+        self.assertEqual(1, len([line for line in done.stderr.splitlines() if "vehicle_" in line]), done.stderr)
+        table.write_text("time_s,vehicle_1_pa\n0,0\n2,5\n1,-7\n1,4e8\n")
+        errors = train_sim("check", DIP, "--set", f"pressure_table={table}").stderr
+        for text in ("table.csv:4: time_s must be later than that of the row before, 2 s, got 1",
+                     "table.csv:4: vehicle_1_pa must be in [0, 3000000] Pa, got -7",
+                     "table.csv:5: time_s must be later", "table.csv:5: vehicle_1_pa must be in [0, 3000000] Pa, got 400000000"):
+            self.assertIn(text, errors)
+        table.write_text("time_s,vehicle_1_pa\n0,0\n0,5,100,25\n")
+        self.assertIn("table.csv:3: has 4 values, but the header names 2 columns; decimals take a point",
+                      train_sim("check", DIP, "--set", f"pressure_table={table}").stderr)
+
+    def test_commands_behind_the_end_are_told(self):
+        done = train_sim("check", EMERGENCY, "--set", "duration_s=1")
+        self.assertIn("commands[0].time_s is 2, but the run ends at 1 s: the command is never given", done.stderr)
+        self.assertNotIn("never given", train_sim("check", EMERGENCY, "--set", "duration_s=3").stderr)
+
+    def test_misspelt_commands_and_options_get_the_likely_one(self):
+        for arguments, text in ((["runn", EMERGENCY], "'runn' is no command; did you mean run?"),
+                                (["verfy"], "'verfy' is no command; did you mean verify?"), (["fly"], "'fly' is no command"),
+                                (["run", EMERGENCY, "--tread", "2"], "--tread: did you mean --threads?")):
+            done = train_sim(*arguments)
+            self.assertEqual(2, done.returncode)
+            self.assertIn(text, done.stderr)
+
+    def test_intervals_are_plain_numbers(self):
+        for interval in ("nan", "inf", "-1", "1e999", "0x10", "ten"):
+            done = train_sim("run", DIP, "--out", self.out, "--checkpoint-interval", interval, *SHORT)
+            self.assertEqual(2, done.returncode, interval)
+            self.assertIn(f"must be a plain number of seconds >= 0, got '{interval}'", done.stderr)
+            self.assertFalse(self.out.exists())
+
+    def test_a_replaced_result_is_told(self):
+        self.assertNotIn("replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
+        self.assertIn("out held the results of a run, which are replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
+
+    def test_what_arguments_hold_commands_no_terminal(self):
+        for arguments in (["run", "a\x1b[31mb.yaml"], ["\x1b[2J"], ["run", EMERGENCY, "--\x1b[2Jx"], ["verify", "\x1b]0;t\x07"],
+                          ["run", EMERGENCY, "--set", "name=\"\\e[31m\""], ["check", EMERGENCY, "--set", "\x9b=1"],
+                          ["run", "--resume", "\u202etxt"]):
+            done = train_sim(*arguments)
+            self.assertIn(done.returncode, (1, 2, 6), arguments)
+            self.assertEqual([], [c for c in done.stdout + done.stderr if (ord(c) < 32 and c not in "\n\t") or ord(c) in (0x7f, 0x9b, 0x202e)])
 
     def test_pressure_table_errors(self):
         table = self.write("table.csv", "time_s,vehicle_1_pa\n0,0\n1,x\n")
@@ -712,6 +794,8 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("`rosbag decompress`", self.verify(self.out, code=6))
         bag.write_bytes(whole)
         (self.out / "config.yaml").write_text("dt_s: fast\n")
+        self.assertIn("config.yaml is not the scenario that the bag holds, which is repeated", self.verify(self.out, code=0))
+        self.rewrite(bag, lambda topic, message: None if topic == "/train/scenario" else (topic, message)).replace(bag)
         self.assertIn("config.yaml:1: dt_s must be a number", self.verify(self.out, code=6))
 
     def test_verify_two_runs_in_a_bag(self):

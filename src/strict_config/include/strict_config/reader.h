@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -34,6 +35,9 @@ struct LoadOptions {
   /// The folder in which a `base: NAME` of the file itself is looked for; empty: the folder that the file is
   /// in.
   std::string kind;
+  /// The sizes that a number can have in reality, by the path of its key, beyond what its range allows: the reader of a file asks
+  /// whether the unit is right. Zero is not judged. Empty: all are.
+  std::function<Range(const std::string& path)> plausible_size;
 };
 
 /// What all readers of one configuration share.
@@ -54,7 +58,8 @@ struct ReadSession {
     Source source;
     std::size_t part = 0;  ///< see KeyPath
   };
-  std::map<std::string, ReadMap> read = {};  ///< by path
+  std::map<std::string, ReadMap> read = {};                                ///< by path
+  std::function<Range(const std::string& path)> plausible_size = nullptr;  ///< see LoadOptions
 
   /// Where a value of the configuration stands.
   struct Spot {

@@ -14,8 +14,10 @@
 
 #include "strict_config/csv_table.h"
 #include "strict_config/reader.h"
+#include "strict_config/suggestion.h"
 #include "strict_config/writer.h"
 #include "train_dynamics/brake/pressure_table.h"
+#include "train_dynamics/config/plausible.h"
 #include "train_dynamics/contact/kalker.h"
 #include "train_dynamics/train/scenario_warnings.h"
 #include "train_dynamics/vehicle/wagon_modes.h"
@@ -42,6 +44,7 @@ LoadOptions OptionsFor(const std::vector<std::string>& overrides, const std::str
   options.search_remedy = std::string("set ") + kPartsVariable + " to the config folder of train_brake";
   options.overrides = overrides;
   options.kind = kind;
+  options.plausible_size = PlausibleSize;
   return options;
 }
 
@@ -50,23 +53,78 @@ void ThrowIfAny(const ErrorList& errors) {
   if (!errors.empty()) throw Error(errors);
 }
 
-BrakeSystem ReadPressureTable(const std::string& file, int vehicles) {
+std::string PressureColumn(int vehicle) { return "vehicle_" + std::to_string(vehicle) + "_pa"; }
+
+/// Warns where a table of pressures and the run do not cover each other.
+void WarnOfCover(const CsvTable& table, const std::vector<double>& time_s, int vehicles, double duration_s,
+                 std::vector<std::string>& warnings) {
+  using strict_config::ShortestDecimal;
+  const auto warn = [&](const std::string& text) { warnings.push_back(table.file + ": " + text); };
+  if (time_s.front() > 0.0) {
+    warn("begins at " + ShortestDecimal(time_s.front()) +
+         " s: until then the pressures of its first row hold, from time 0 on");
+  }
+  if (time_s.back() < duration_s) {
+    warn("ends at " + ShortestDecimal(time_s.back()) + " s of " + ShortestDecimal(duration_s) +
+         " s: from then on the pressures of its last row hold");
+  }
+  std::set<std::string> used = {"time_s"};
+  for (int i = 1; i <= vehicles; ++i) used.insert(PressureColumn(i));
+  const auto unused = std::count_if(table.columns.begin(), table.columns.end(),
+                                    [&](const std::string& name) { return used.count(name) == 0; });
+  if (unused > 0) {
+    warn(std::to_string(unused) + " of its columns are not used: the train has " + std::to_string(vehicles) +
+         (vehicles == 1 ? " vehicle" : " vehicles"));
+  }
+}
+
+BrakeSystem ReadPressureTable(const std::string& file, int vehicles, double duration_s,
+                              std::vector<std::string>& warnings) {
   ErrorList errors;
   const CsvTable table = ReadCsvTable(file, errors);
   ThrowIfAny(errors);
   const std::vector<double>* time = table.Column("time_s", errors);
+  const auto column_of = [&](int vehicle) {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), PressureColumn(vehicle));
+    return found == table.columns.end() ? nullptr : &table.values[found - table.columns.begin()];
+  };
   std::vector<std::vector<double>> pressures;
+  std::vector<std::string> missing;
   for (int i = 1; i <= vehicles; ++i) {
-    const std::vector<double>* column = table.Column("vehicle_" + std::to_string(i) + "_pa", errors);
-    if (column != nullptr) pressures.push_back(*column);
+    if (const std::vector<double>* column = column_of(i)) {
+      pressures.push_back(*column);
+    } else {
+      missing.push_back(PressureColumn(i));
+    }
+  }
+  if (!missing.empty()) {
+    constexpr std::size_t kListed = 3;
+    errors.Add(table.file, table.header_line, "",
+               "has no column" + std::string(missing.size() == 1 ? " " : "s ") +
+                   strict_config::Join(missing, kListed) + ": of " + std::to_string(vehicles) + " vehicles " +
+                   std::to_string(missing.size()) + " have no pressures");
   }
   ThrowIfAny(errors);
-  try {
-    return BrakeSystem(PressureTable(*time, std::move(pressures)));
-  } catch (const std::invalid_argument& e) {
-    errors.Add(file, 0, "", e.what());
-    throw Error(errors);
+  const auto complain = [&](std::size_t row, const std::string& key, double value, const std::string& rule) {
+    errors.Add(table.file, table.row_lines[row], key,
+               rule + ", got " + strict_config::ShortestDecimal(value));
+  };
+  for (std::size_t row = 0; row < time->size(); ++row) {
+    if (row > 0 && (*time)[row] <= (*time)[row - 1]) {
+      complain(row, "time_s", (*time)[row],
+               "must be later than that of the row before, " +
+                   strict_config::ShortestDecimal((*time)[row - 1]) + " s");
+    }
+    constexpr double kLargest = 3e6;  // see PlausibleSize
+    for (int i = 0; i < vehicles; ++i) {
+      const double pressure_pa = pressures[static_cast<std::size_t>(i)][row];
+      if (pressure_pa >= 0.0 && pressure_pa <= kLargest) continue;
+      complain(row, PressureColumn(i + 1), pressure_pa, "must be in [0, 3000000] Pa");
+    }
   }
+  ThrowIfAny(errors);
+  WarnOfCover(table, *time, vehicles, duration_s, warnings);
+  return BrakeSystem(PressureTable(*time, std::move(pressures)));
 }
 
 /// Whether a vehicle has a 2D model that can rest; if not, reports which of its parameters prevent it.
@@ -184,7 +242,7 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
   ScenarioParams params = Load<ScenarioParams>(file, OptionsFor(overrides, "scenarios"), errors, judge);
   ThrowIfAny(errors);
   if (!params.pressure_table.empty()) {
-    pressures = ReadPressureTable(params.pressure_table, consist->vehicles());
+    pressures = ReadPressureTable(params.pressure_table, consist->vehicles(), params.duration_s, warnings);
     files.emplace_back(params.pressure_table);
   }
   return {std::move(params),   std::move(*consist), std::move(*pressures),

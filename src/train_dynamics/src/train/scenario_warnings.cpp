@@ -198,6 +198,13 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                                  ": its wheels neither slide nor lock"});
   }
   WarnOfTraction(scenario, warnings);
+  for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
+    const std::optional<double>& time_s = scenario.commands[i].time_s;
+    if (!time_s || *time_s < scenario.duration_s) continue;
+    const std::string key = "commands" + ListIndex(i) + ".time_s";
+    warnings.push_back({key, key + " is " + ShortNumber(*time_s) + ", but the run ends at " +
+                                 ShortNumber(scenario.duration_s) + " s: the command is never given"});
+  }
   for (const VehicleModel model : {VehicleModel::kLtd, VehicleModel::kLtdNoInertia}) {
     if (!scenario.Uses(model)) continue;
     const auto leaves_out = [&](const std::string& key, std::size_t entries) {
@@ -210,11 +217,12 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
       leaves_out("track.friction_patches", scenario.track.friction_patches.size());
   }
   WarnOfStart(scenario, warnings);
-  if (scenario.Uses(VehicleModel::kTwoD) && !train.consist.empty()) {
+  if ((scenario.Uses(VehicleModel::kTwoD) || scenario.adhesion_limit) && !train.consist.empty()) {
     const Stretch reach = ReachOf(scenario);
-    WarnOfReach(
-        "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
-        reach, warnings);
+    if (scenario.Uses(VehicleModel::kTwoD))
+      WarnOfReach(
+          "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
+          reach, warnings);
     WarnOfReach(
         "track.friction_patches", scenario.track.friction_patches,
         [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach,
