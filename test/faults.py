@@ -321,6 +321,24 @@ class SideChannels(Matrix):
         self.assert_same(launch)
         self.note(f"{seconds:.2f}", "refused, its exit code is 2; the first: same bits")
 
+    @cell("report, export and verify of the run", "mid-run, while it is recorded")
+    def test_readers_of_a_run_in_progress(self):
+        self.settings = "duration_s=20"
+        launch = self.launch(PACED)
+        launch.saw(r" 5\.00 of 20 s", SOON)
+
+        def read(*command):
+            return subprocess.run(["rosrun", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+
+        page = self.folder / "page.html"
+        for done in (read("train_brake", "report", str(launch.out), "--out", str(page)),
+                     read("train_brake", "export", str(launch.out), str(self.folder / "tables"))):
+            self.assertTrue(done.returncode == 0 or "is writing it now" in done.stdout, done.stdout)
+        self.assertIn(read("train_sim", "train_sim", "verify", str(launch.out)).returncode, (6, 7))
+        self.assertIn("another run is writing into", read("train_sim", "train_sim", "run", str(SHORT_TRAIN), "--out", str(launch.out)).stdout)
+        self.assert_same(launch)
+        self.note("-", "read as far as it goes, or refused; the run: same bits")
+
     @cell("roscore restarted", "mid-run")
     def test_roscore_restarted(self):
         self.settings = "duration_s=6"

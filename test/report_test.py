@@ -163,6 +163,26 @@ class ReportTest(unittest.TestCase):
         (folder / "summary.json").write_text('{"a": 1}')
         self.assertEqual("0.2", self.page(folder / "measured.bag").numbers[0]["simulated_s"][:3])
 
+    def test_what_is_no_file_is_not_waited_for(self):
+        for name in ("train.bag", "summary.json", "couplers.csv", "slides.csv", "track_wear.csv"):
+            folder = self.copy(f"pipe {name}")
+            (folder / name).unlink(missing_ok=True)
+            os.mkfifo(folder / name)
+            self.assertIn("no file", self.report(folder, code=1)[1], name)
+
+    def test_a_deep_summary_is_told(self):
+        folder = self.copy("deep")
+        (folder / "summary.json").write_text("[" * 100000)
+        self.assertIn("summary.json is damaged: maximum recursion depth", self.report(folder, code=1)[1])
+
+    def test_a_full_output_does_not_deny_the_page(self):
+        out = self.here / "page.html"
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(["rosrun", "train_brake", "report", str(six_wagons()), "--out", str(out)], stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        self.assertEqual((0, True), (done.returncode, out.exists()), done.stderr)
+        self.assertNotIn("could not be written", done.stderr)
+
     def test_a_page_needs_no_locale(self):
         folder = self.copy("Z\u00fcge")
         done = subprocess.run(["rosrun", "train_brake", "report", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -565,7 +585,10 @@ class ReportTest(unittest.TestCase):
         self.assertIn("Energy ledger", self.page(bag).left_out)
 
     def test_a_vehicle_or_coupler_that_is_not_there(self):
-        page = self.page(six_wagons(), "--wagon", 7, "--coupler", 6)
+        page, printed = self.report(six_wagons(), "--wagon", 7, "--coupler", 6)
+        self.assertIn("warning: --wagon 7 is not shown: the train has 6", printed)
+        self.assertIn("warning: --coupler 6 is not shown: the train has 5", printed)
+        self.assertNotIn("warning", self.report(six_wagons(), "--wagon", 6, "--coupler", 5)[1])
         self.assertEqual("There is no wagon 7: the train has 6 vehicle(s).", page.left_out["Shoe and wheel"])
         self.assertEqual("There is no coupler 6: the train has 5.", page.left_out["Force of a coupler"])
 

@@ -263,8 +263,8 @@ class TrainSimTest(unittest.TestCase):
         self.assertNotIn("never given", train_sim("check", EMERGENCY, "--set", "duration_s=3").stderr)
 
     def test_misspelt_commands_and_options_get_the_likely_one(self):
-        for arguments, text in ((["runn", EMERGENCY], "'runn' is no command; did you mean run?"),
-                                (["verfy"], "'verfy' is no command; did you mean verify?"), (["fly"], "'fly' is no command"),
+        for arguments, text in ((["runn", EMERGENCY], "there is no command runn; did you mean run?"),
+                                (["verfy"], "there is no command verfy; did you mean verify?"), (["fly"], "there is no command fly"),
                                 (["run", EMERGENCY, "--tread", "2"], "--tread: did you mean --threads?")):
             done = train_sim(*arguments)
             self.assertEqual(2, done.returncode)

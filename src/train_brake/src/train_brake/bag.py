@@ -244,6 +244,8 @@ class BagFile:
         """@raises BagError  names the file"""
         self.path = pathlib.Path(path)
         with self._named(), _damage_named():
+            if self.path.exists() and not self.path.is_file():  # a pipe would be waited for
+                raise BagError("this is no file" + (", but a folder" if self.path.is_dir() else ""))
             with open(self.path, "rb") as file:
                 begin = file.read(len(BAG_BEGIN))
             if not begin:

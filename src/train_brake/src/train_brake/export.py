@@ -1,6 +1,7 @@
 """The command `export`: a run as CSV tables or as one HDF5 file."""
 
 import argparse
+import contextlib
 import csv
 import json
 import pathlib
@@ -113,7 +114,8 @@ def _export(options: argparse.Namespace) -> None:
     run.read(topics)
     is_hdf5 = options.out.suffix in (".h5", ".hdf5")
     for file in (write_hdf5 if is_hdf5 else write_csv)(run, topics, options.out):
-        print(presentable(f"export: wrote {file}"))
+        with contextlib.suppress(OSError):  # the table is there, whether or not that can be told
+            print(presentable(f"export: wrote {file}"), flush=True)
     for topic in topics:
         left_out = [field for field in run[topic].fields if run[topic][field].dtype == object]
         if left_out:
@@ -127,6 +129,8 @@ def main(argv: List[str]) -> int:
         _export(options)
     except BagError as error:
         print(presentable(f"export: {error}"), file=sys.stderr)
+        return 1
+    except BrokenPipeError:  # of --list, which nobody reads on
         return 1
     except OSError as error:
         print(presentable(f"export: the tables could not be written: {error}"), file=sys.stderr)

@@ -41,7 +41,7 @@ def parsed(text: str, source: pathlib.Path, parse) -> dict:
     """The keys in a text of JSON or YAML; none in an empty one. @raises BagError"""
     try:
         content = parse(text) if text else {}
-    except (ValueError, yaml.YAMLError) as error:
+    except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise BagError(f"{source} is damaged: {' '.join(str(error).split())}") from None
     if not isinstance(content, dict):
         raise BagError(f"{source} is damaged: it is no list of keys")
@@ -50,6 +50,8 @@ def parsed(text: str, source: pathlib.Path, parse) -> dict:
 
 def text_of(file: pathlib.Path) -> str:
     """Empty if there is no such file. @raises BagError"""
+    if file.exists() and not file.is_file():
+        raise BagError(f"{file} is no file")
     try:
         return file.read_text(encoding="utf-8") if file.exists() else ""
     except (OSError, UnicodeDecodeError) as error:
@@ -74,8 +76,7 @@ def summary_from(file: pathlib.Path) -> Optional[dict]:
 
 def read_couplers(file: pathlib.Path) -> Dict[str, numpy.ndarray]:
     """The columns of a run's couplers.csv: largest forces of all exchanges, and when, for each connection."""
-    with open(file, newline="", encoding="utf-8") as text:
-        rows = list(csv.DictReader(text))
+    rows = list(csv.DictReader(text_of(file).splitlines()))
     try:
         return {
             name: numpy.array([float(row[name]) for row in rows])

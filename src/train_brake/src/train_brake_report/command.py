@@ -1,6 +1,7 @@
 """The command `report`: arguments, files, exit codes."""
 
 import argparse
+import contextlib
 import datetime
 import pathlib
 import platform
@@ -25,7 +26,10 @@ EPILOG = "Exit codes: 0 done; 1 a run cannot be read, or the page cannot be writ
 
 
 def _natural(text: str) -> int:
-    number = int(text)
+    try:
+        number = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a whole number, got {text!r}") from None
     if number < 1:
         raise argparse.ArgumentTypeError(f"must be >= 1, got {number}")
     return number
@@ -106,9 +110,11 @@ class Report:
         self.cards: List[cards.Card] = []
         self.sections: List[page.Section] = []
         self.rows: List[cards.PaperRow] = []
+        self.longest = 0  # [vehicles] of all trains
 
     def add_runs(self, name: str, anchor: str, given: List[pathlib.Path]) -> None:
         runs = _read(given, self.options.wagon)
+        self.longest = max(self.longest, *(run.vehicles for run in runs))
         for run in runs:
             paper.judge(run, self.train_sim)
         group = Group(anchor if self.options.by_scenario else "", runs,
@@ -119,6 +125,13 @@ class Report:
             card.label = f"{name}: {card.label}" if name else card.label
             self.cards.append(card)
             self.rows += filter(None, [cards.paper_row(run)])
+
+    def warn_of_numbers(self) -> None:
+        """Of the user that no train has: the figure is left out, and its place tells why."""
+        for option, number, last in (("--wagon", self.options.wagon, self.longest),
+                                     ("--coupler", self.options.coupler, self.longest - 1)):
+            if number is not None and self.longest and number > last:
+                print(f"report: warning: {option} {number} is not shown: the train has {last}", file=sys.stderr)
 
     def add_tables(self) -> None:
         if self.rows:
@@ -150,6 +163,7 @@ def write_report(options: argparse.Namespace, train_sim: List[str]) -> pathlib.P
         anchors = anchors_of(groups)
         for name, given in groups.items():
             report.add_runs(name, anchors[name], given)
+        report.warn_of_numbers()
         report.add_tables()
         if options.vehicle:
             report.add_vehicle()
@@ -170,7 +184,7 @@ def main(argv: List[str], train_sim: List[str] = ("rosrun", "train_sim", "train_
     accept_all_characters()
     options = _arguments(argv)
     try:
-        print(presentable(f"report: wrote {write_report(options, list(train_sim))}"))
+        out = write_report(options, list(train_sim))
     except BagError as error:
         print("\n".join(f"report: {line}" for line in presentable(error).split("\n")), file=sys.stderr)
         return 1
@@ -179,4 +193,6 @@ def main(argv: List[str], train_sim: List[str] = ("rosrun", "train_sim", "train_
         return 1
     except KeyboardInterrupt:
         return 130
+    with contextlib.suppress(OSError):  # the page is there, whether or not that can be told
+        print(presentable(f"report: wrote {out}"), flush=True)
     return 0

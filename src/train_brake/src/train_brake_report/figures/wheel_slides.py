@@ -6,6 +6,7 @@ from typing import Dict, Sequence
 
 import numpy
 from train_brake.bag import BagError
+from train_brake.run import text_of
 
 from train_brake_report import style
 from train_brake_report.figure import Figure, Table, new_canvas
@@ -22,9 +23,8 @@ OF_WEAR = ("from_m", "creep_j", "brake_j")
 
 def _columns(file: pathlib.Path, needed: Sequence[str]) -> Dict[str, numpy.ndarray]:
     """@raises BagError"""
-    with open(file, newline="", encoding="utf-8") as text:
-        reader = csv.DictReader(text)
-        rows = list(reader)
+    reader = csv.DictReader(text_of(file).splitlines())
+    rows = list(reader)
     missing = [name for name in needed if name not in (reader.fieldnames or [])]
     if missing:
         raise BagError(f"{file} is damaged: it has no column {', '.join(missing)}")
