@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Checks every launch file as roslaunch_add_file_check does.
+"""Checks every launch file as roslaunch_add_file_check does, and what they launch.
 
-(That CMake function takes the folder that a file really lies in, and launch/ lies outside of the package train_brake,
-which links to it.)
+(That CMake function and roslaunch-check look for the package of a file in the folders that it really lies in. launch/ lies
+outside of the package train_brake, which links to it; so there is a link to its package.xml in launch/.)
 """
 import pathlib
 import subprocess
@@ -21,6 +21,12 @@ class LaunchFiles(unittest.TestCase):
         for file in files:
             with self.subTest(file.name):
                 self.assertIsNone(roslaunch.rlutil.check_roslaunch(str(file), ignore_unset_args=True))
+
+    def test_the_program_that_checks_launch_files_knows_their_package(self):
+        for file in (LAUNCH / "emergency.launch", LAUNCH.parent / "src" / "train_brake" / "launch" / "view.launch"):
+            done = subprocess.run(["rosrun", "roslaunch", "roslaunch-check", str(file)], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True)
+            self.assertEqual(0, done.returncode, done.stdout)
 
     def test_every_scenario_has_a_launch_file_that_names_it(self):
         scenarios = {file.stem for file in (LAUNCH.parent / "config" / "scenarios").glob("*.yaml")}
