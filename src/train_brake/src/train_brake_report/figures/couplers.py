@@ -28,6 +28,11 @@ def compare_largest(ours: numpy.ndarray, others: numpy.ndarray) -> tuple:
     return numpy.abs(difference).mean(), difference[side, at], int(at) + 1
 
 
+def _marker(connections: numpy.ndarray) -> dict:
+    """A single connection is a point: a line would not show it."""
+    return {"marker": "o"} if len(connections) == 1 else {}
+
+
 def draw_largest(group: Group) -> Figure:
     runs, not_shown = group.drawable(_why_not)
     others, not_compared = group.comparable(runs, "forces", same_instants=False)
@@ -37,8 +42,8 @@ def draw_largest(group: Group) -> Figure:
     for run in runs:
         largest[run] = KN * run.largest_coupler_forces_n
         connections = numpy.arange(1, largest[run].shape[1] + 1)
-        axes.plot(connections, largest[run][0], label=run.label, **group.line(run))
-        axes.plot(connections, largest[run][1], **group.line(run))
+        axes.plot(connections, largest[run][0], label=run.label, **group.line(run), **_marker(connections))
+        axes.plot(connections, largest[run][1], **group.line(run), **_marker(connections))
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0)
     axes.set_ylabel("largest coupler force [kN]")
     for side, offset, align in (("tension", 4, "bottom"), ("compression", -5, "top")):
@@ -56,14 +61,17 @@ def draw_largest(group: Group) -> Figure:
         difference = largest[run] - largest[first]
         connections = numpy.arange(1, difference.shape[1] + 1)
         for side, values, dash in zip(("tension", "compression"), difference, ("-", (0, (3, 1.5)))):
-            panel.plot(connections, values, linestyle=dash, color=group.colour(run), linewidth=1.4, label=side)
+            panel.plot(connections, values, linestyle=dash, color=group.colour(run), linewidth=1.4, label=side,
+                       **_marker(connections))
         panel.set_ylabel("[kN]")
         style.legend_inside(panel)
         mean, most, connection = compare_largest(largest[first], largest[run])
         caption += (f" {group.difference(run, first)}: {mean:.2f} kN on average in size, at most {minus(f'{most:+.1f}')} kN at "
                     f"connection {connection}.")
     canvas.axes[-1].set_xlabel("connection, from the front")
-    canvas.axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
+    canvas.axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+    if first.vehicles == 2:
+        canvas.axes[-1].set_xlim(0.5, 1.5)
     if all(run.is_of_paper for run in runs) and {"ltd", "2d"} <= {run.model for run in runs}:
         caption += _beside_the_paper(first.scenario, axes)
     return Figure("largest_coupler_forces", "Largest coupler forces along the train", caption + not_compared + not_shown,

@@ -6,6 +6,7 @@ from typing import List, Tuple
 import numpy
 from matplotlib import patheffects
 from matplotlib.colors import LogNorm
+from matplotlib.ticker import MaxNLocator
 
 from train_brake_report import style, wave
 from train_brake_report.figure import Figure, LeftOut, Table, minus, new_canvas
@@ -77,6 +78,7 @@ def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label:
     axes.set_xlim(time_s[0], time_s[-1])
     axes.grid(False)
     axes.set_ylabel(rows)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     bar = axes.figure.colorbar(image, ax=axes, pad=0.015, aspect=18, label=label, extend=arrows)
     bar.outline.set_visible(False)
     if isinstance(image.norm, LogNorm):
