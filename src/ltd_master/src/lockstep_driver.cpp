@@ -104,7 +104,8 @@ LockstepDriver::Commands LockstepDriver::Ask(const train_brake_msgs::DriverView&
   if (answer.protocol_version != train_brake_msgs::DriveRequest::PROTOCOL_VERSION) {
     throw DriverFailure(fmt::format(
         "the master speaks version {} of Drive.srv, the driver {} version {}: both must be of the same build",
-        train_brake_msgs::DriveRequest::PROTOCOL_VERSION, options_.node, answer.protocol_version));
+        std::uint32_t{train_brake_msgs::DriveRequest::PROTOCOL_VERSION}, options_.node,
+        answer.protocol_version));
   }
   if (!answer.ok) {
     Lose(view.exchange, answer.message.empty() ? "gives up" : "gives up: " + answer.message);
