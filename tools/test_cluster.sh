@@ -115,6 +115,20 @@ failed() {
 }
 [ "$code" = 0 ] && [ -n "$expected" ] && [ "$got" = "$expected" ] && [ "$placed" = "3 2 2" ] && [ "$left" = 0 ] || failed
 
+# A study whose runs are dealt to two of the machines by GNU parallel (docs/studies.md): the table of one that was run here.
+study() { rosrun train_brake sweep "$workspace/config/scenarios/single_wagon_stop.yaml" "$work/$1" --grid initial_speed_kmh=40:80:6 "${@:2}" >/dev/null 2>&1; }
+study here && study far --plan-only && mkdir -p "$work/remote" || failed
+(cd "$work" && parallel --will-cite --ssh "ssh -i $work/home/.ssh/id_rsa -o UserKnownHostsFile=$work/home/.ssh/known_hosts" \
+  --sshlogin "1/root@${addresses[0]},1/root@${addresses[1]}" --workdir "$work/remote" --joblog "$work/joblog" \
+  --transferfile far/runs/{}/config.yaml --return far/runs/{}/summary.json --cleanup \
+  ". $workspace/devel/setup.bash; train_sim run far/runs/{}/config.yaml --threads 1 > far/runs/{}/summary.json" :::: far/jobs.txt) \
+  >"$work/parallel.log" 2>&1 || failed
+rosrun train_brake sweep "$work/far" --collect >/dev/null || failed
+cmp "$work/here/results.csv" "$work/far/results.csv" || failed
+hosts=$(tail -n +2 "$work/joblog" | cut -f2 | sort -u | wc -l)
+echo "study: 6 runs over $hosts machines, the table of one machine"
+[ "$hosts" = 2 ] || failed
+
 # Two runs that lose a machine: first its link, for a while (a node that has replied before is not even missed); then
 # the machine itself, for good, and its two nodes are started by hand on another one.
 change="duration_s=8"
