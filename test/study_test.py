@@ -2,17 +2,19 @@
 """`rosrun train_brake sweep` and `calibrate`, as their users meet them."""
 import csv
 import json
+import os
 import pathlib
-import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import numpy
 import rosunit
 import yaml
 
-from train_brake import calibrate, study, sweep
+from train_brake import study
 
 HERE = pathlib.Path(__file__).resolve().parent
 # A wagon that rolls freely: its way is known by hand, and a run takes no time.
@@ -152,6 +154,26 @@ class Sweep(InAFolder):
         for line in lines:  # level and without resistance: the start speed stays
             self.assertAlmostEqual(sorted(speeds["1"])[2], float(line["p50"]), delta=1e-6)
             self.assertAlmostEqual(min(speeds["1"]), float(line["min"]), delta=1e-6)
+
+    def test_ctrl_c_ends_the_runs_and_what_is_done_is_kept(self):
+        (self.here / "cases.csv").write_text("duration_s\n1\n1e9\n1e9\n")
+        process = subprocess.Popen(["rosrun", "train_brake", "sweep", str(self.scenario), str(self.out), "--list",
+                                    str(self.here / "cases.csv"), "--jobs", "2"], start_new_session=True, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not list(self.out.glob("runs/0003/log")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)
+        os.killpg(process.pid, signal.SIGINT)
+        _, messages = process.communicate(timeout=60)
+        self.assertEqual(130, process.returncode, messages)
+        self.assertIn("1 of 3 runs are done", messages)
+        self.assertEqual(["0001"], [row["run"] for row in table(self.out / "results.csv")])
+        self.assertEqual("", subprocess.run(["pgrep", "-f", str(self.out)], stdout=subprocess.PIPE, text=True, check=False).stdout)
+
+    def test_a_key_for_all_runs_that_also_changes_is_refused(self):
+        done = self.sweep(self.scenario, self.out, "--grid", "dt_s=0.01,0.02", "--set", "dt_s=0.005")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("dt_s: set for all runs, and changed from run to run", done.stderr)
 
     def test_a_list_changes_what_its_cells_say(self):
         (self.here / "cases.csv").write_text("initial_speed_kmh,track\n18,\n,level\n")

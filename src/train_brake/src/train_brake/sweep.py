@@ -123,6 +123,9 @@ class Study:
         if options.model:
             fixed.append(Change("model", options.model))
         variants = _variants(options)
+        both = sorted({change.path for change in fixed} & {change.path for variant in variants for change in variant})
+        if both:
+            raise StudyError(f"{', '.join(both)}: set for all runs, and changed from run to run")
         asked = {
             "scenario": str(options.scenario),
             "set": [str(change) for change in fixed],
