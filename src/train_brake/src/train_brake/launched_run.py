@@ -145,7 +145,8 @@ def in_short(summary):
             return []
         return [f"{what} {abs(largest['value']) / 1e3:.0f} kN in connection {largest['connection']} at {largest['time_s']:.1f} s"]
 
-    what = f"{summary.get('scenario')}: {summary.get('vehicles')} vehicle(s), {summary.get('model')} model, "
+    vehicles = summary.get("vehicles")
+    what = f"{summary.get('scenario')}: {vehicles} vehicle{'' if vehicles == 1 else 's'}, {summary.get('model')} model, "
     if summary.get("stopped"):
         what += f"stands after {summary['stop_time_s']:.1f} s and {summary['stop_distance_m']:.1f} m"
     else:
