@@ -126,17 +126,16 @@ fuzz: deps ## hostile input for every parser, FUZZ_SECONDS=60 each (clang), in b
 	@$(fuzz) fuzzers $(quietly)
 	@tools/fuzz.sh build_fuzz devel_fuzz $(FUZZ_SECONDS)
 
-# An install space of its own, as it lies on the machine where the package is installed.
+# The programs of the build, installed for where they will lie on other machines.
 .PHONY: deb
 deb: deps ## Debian packages for users without the source tree, in build_deb/packages/
-	@env DESTDIR=$(CURDIR)/build_deb/root $(catkin_make) --build build_deb/build -DCATKIN_DEVEL_PREFIX=$(CURDIR)/build_deb/devel \
-	  -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=OFF -DCMAKE_INSTALL_PREFIX=/opt/train_brake \
-	  -DCMAKE_INSTALL_RPATH=/opt/train_brake/lib install $(quietly)
+	@tools/install_packages.sh packages_deb.txt
+	@rm -rf build_deb
+	@env DESTDIR=$(CURDIR)/build_deb/root $(release) -DCMAKE_INSTALL_PREFIX=/opt/train_brake install $(quietly)
 	@tools/deb/make_deb.sh build_deb/root build_deb/packages
 
 .PHONY: test-deb
 test-deb: deb ## ... installed, run and removed on a bare Debian 12 (debootstrap; needs root and a Debian mirror)
-	@tools/install_packages.sh packages_deb.txt
 	@tools/deb/test_deb.sh build_deb/packages
 
 .PHONY: site

@@ -30,6 +30,7 @@ cat >"$main/usr/bin/train_sim" <<END
 #!/bin/sh
 # The program, with the shipped parts behind those of the caller.
 export TRAIN_BRAKE_CONFIG="\${TRAIN_BRAKE_CONFIG:+\$TRAIN_BRAKE_CONFIG:}$prefix/share/train_brake/config"
+export LD_LIBRARY_PATH="$prefix/lib\${LD_LIBRARY_PATH:+:\$LD_LIBRARY_PATH}"
 exec $prefix/lib/train_sim/train_sim "\$@"
 END
 chmod 755 "$main/usr/bin/train_sim"
