@@ -16,8 +16,8 @@ main=$work/train-brake rviz=$work/train-brake-rviz
 mkdir -p "$main" "$rviz" "$out"
 cp -a "$root/opt" "$main/"
 find "$main" -name __pycache__ -prune -exec rm -rf {} +
-rm -rf "$main$prefix/include" "$main$prefix/lib/pkgconfig"
-grep -rlI "$root" "$main" | xargs -r sed -i "s:$root::g"   # paths of the folder that it was staged in
+rm -rf "$main$prefix/include" "$main$prefix/lib/pkgconfig" "$main$prefix"/share/*/cmake
+{ grep -rlI "$root" "$main" || true; } | xargs -r sed -i "s:$root::g"   # paths of the folder that it was staged in
 (cd "$main$prefix" && find . \( -path './lib/*train_brake_rviz*' -o -path './share/train_brake_rviz*' \) \( -type f -o -type l \) -print0) |
   while IFS= read -r -d '' file; do
     mkdir -p "$rviz$prefix/$(dirname "$file")" && mv "$main$prefix/$file" "$rviz$prefix/$file"
