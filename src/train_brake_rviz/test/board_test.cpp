@@ -123,6 +123,22 @@ TEST(Board, ColoursEachVehicleByItsValue) {
               0.006);  // of the train's length
 }
 
+// A pipe that falls towards the rear, of a brake that has one: each vehicle has the colour of its pressure.
+TEST(Board, ShowsThePipeAlongTheTrain) {
+  const ScenarioParams scenario = Load("emergency");
+  Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
+  Board board(scenario);
+  const Quantity& pipe = *FindQuantity("pipe_pressure");
+  const Color front = ColorOf(pipe, 450.0, 500.0),
+              rear = ColorOf(pipe, 300.0, 500.0);                         // kPa; the scale's end
+  EXPECT_EQ(0.0, AreaOf(board.Draw(snapshot, {&pipe, 0}).train, front));  // the brake has none
+  snapshot.pipe_pressure_pa.assign(242, 4.5e5);
+  for (int i = 121; i < 242; ++i) snapshot.pipe_pressure_pa[i] = 3.0e5;
+  const Picture picture = board.Draw(snapshot, {&pipe, 0});
+  EXPECT_NEAR(AreaOf(picture.train, front) / AreaOf(picture.train, rear), 1.0, 1e-6);
+  EXPECT_LT(ExtentOf(picture.train, front).right, ExtentOf(picture.train, rear).left);
+}
+
 TEST(Board, PlotsOfForcesAreTrueToScale) {
   const ScenarioParams scenario = Load("emergency");
   Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
