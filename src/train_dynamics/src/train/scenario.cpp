@@ -30,19 +30,6 @@ std::vector<std::string> LocomotiveGroups(const TrainParams& train) {
   return names;
 }
 
-/// A text that speaks of commands[k], where k counts those of the brake, with the numbers of the whole list.
-std::string Renumbered(const std::string& text, const std::vector<std::size_t>& index) {
-  const std::string list = "commands[";
-  std::string renumbered;
-  std::size_t at = 0;
-  for (std::size_t found; (found = text.find(list, at)) != std::string::npos;) {
-    const std::size_t number = found + list.size(), end = text.find(']', number);
-    renumbered += text.substr(at, number - at) + std::to_string(index.at(std::stoul(text.substr(number))));
-    at = end;
-  }
-  return renumbered + text.substr(at);
-}
-
 }  // namespace
 
 int ScenarioParams::StepsPerExchange() const { return static_cast<int>(Parts(exchange_interval_s, dt_s)); }
