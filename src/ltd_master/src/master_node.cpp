@@ -353,7 +353,7 @@ train_brake_msgs::DriverView MasterNode::ViewOf(train_run::TrainRun& run, bool s
   const train_dynamics::Locomotives& locomotives = run.master().locomotives();
   if (locomotives.empty()) return view;
   const train_dynamics::TractionParams& lead = locomotives.traction(0);
-  view.throttle_notches = lead.tractive_effort.Notches();
+  view.throttle_notches = lead.tractive_effort.throttle.Notches();
   view.dynamic_brake_notches = lead.dynamic_brake ? lead.dynamic_brake->Notches() : 0;
   return view;
 }

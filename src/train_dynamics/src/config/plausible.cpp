@@ -1,5 +1,6 @@
 #include "train_dynamics/config/plausible.h"
 
+#include <cstring>
 #include <limits>
 
 namespace train_dynamics::config {
@@ -12,7 +13,7 @@ struct Size {
   double least, largest;
 };
 
-// The first that fits counts: keys before units.
+// The longest that fits counts: keys before units.
 constexpr Size kSizes[] = {
     {"wheel_radius_m", 0.1, 2.0},
     {"wheel_lateral_radius_m", 0.01, 1e6},
@@ -98,10 +99,14 @@ bool EndsIn(const std::string& path, const std::string& ending) {
 }  // namespace
 
 Range PlausibleSize(const std::string& path) {
+  const Size* longest = nullptr;
   for (const Size& size : kSizes) {
-    if (EndsIn(path, size.ending)) return {size.least, size.largest, false, false};
+    if (EndsIn(path, size.ending) &&
+        (longest == nullptr || std::strlen(size.ending) > std::strlen(longest->ending)))
+      longest = &size;
   }
-  return {0.0, kAny, false, true};
+  if (longest == nullptr) return {0.0, kAny, false, true};
+  return {longest->least, longest->largest, false, false};
 }
 
 }  // namespace train_dynamics::config
