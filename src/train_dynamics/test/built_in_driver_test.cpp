@@ -164,7 +164,7 @@ Trip RunScenario(const std::string& scenario, const std::vector<std::string>& ov
   return trip;
 }
 
-Trip Run(const std::vector<std::string>& more, int threads = 1) {
+Trip TripOf(const std::vector<std::string>& more, int threads = 1) {
   return RunScenario("drive_and_stop", Driven(more), threads);
 }
 
@@ -177,7 +177,7 @@ bool Gives(const Trip& trip, DriverCommandKind kind) {
 
 TEST(BuiltInDriver, HoldsASpeedOnTheLevelAndUphill) {
   for (const char* grade : {"track=level", "track={name: up, grades: [{from_m: 0, grade_percent: 0.3}]}"}) {
-    const Trip trip = Run({grade, "driver={speed_kmh: 40}", "duration_s=900"});
+    const Trip trip = TripOf({grade, "driver={speed_kmh: 40}", "duration_s=900"});
     EXPECT_LT(trip.Largest(600.0, 40.0), 1.0) << grade;
     EXPECT_FALSE(Gives(trip, DriverCommandKind::kApply)) << grade;
   }
@@ -185,20 +185,20 @@ TEST(BuiltInDriver, HoldsASpeedOnTheLevelAndUphill) {
 
 TEST(BuiltInDriver, HoldsASpeedDownhillWithTheDynamicBrake) {
   // A C44AC before ten loaded hoppers down 1 percent: some 110 kN, which the dynamic brake gives alone.
-  const Trip trip =
-      Run({"train={name: short, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 10}]}",
-           "track={name: down, grades: [{from_m: -1000, grade_percent: -1}]}", "initial_speed_kmh=60",
-           "driver={speed_kmh: 60}", "duration_s=600"});
+  const Trip trip = TripOf(
+      {"train={name: short, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 10}]}",
+       "track={name: down, grades: [{from_m: -1000, grade_percent: -1}]}", "initial_speed_kmh=60",
+       "driver={speed_kmh: 60}", "duration_s=600"});
   EXPECT_LT(trip.Largest(200.0, 60.0), 1.0);
   EXPECT_TRUE(Gives(trip, DriverCommandKind::kDynamicBrake));
   EXPECT_FALSE(Gives(trip, DriverCommandKind::kApply));
 }
 
 TEST(BuiltInDriver, TakesTheAirBrakeWhereTheDynamicBrakeIsTooWeak) {
-  const Trip trip =
-      Run({"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
-           "track={name: down, grades: [{from_m: -3000, grade_percent: -1.2}]}", "brake=head_end",
-           "initial_speed_kmh=50", "driver={speed_kmh: 50}", "duration_s=900"});
+  const Trip trip = TripOf(
+      {"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
+       "track={name: down, grades: [{from_m: -3000, grade_percent: -1.2}]}", "brake=head_end",
+       "initial_speed_kmh=50", "driver={speed_kmh: 50}", "duration_s=900"});
   EXPECT_TRUE(Gives(trip, DriverCommandKind::kApply));
   EXPECT_LT(trip.Largest(120.0, 50.0), 6.0);
 }
@@ -209,17 +209,17 @@ TEST(BuiltInDriver, KeepsBelowLimitsAndStopsAtAPlace) {
       "{from_m: 4000, limit_kmh: 60}], grades: [{from_m: -1000, grade_percent: 0.1}, {from_m: 2000, "
       "grade_percent: -0.5}, {from_m: 5000, grade_percent: 0}], stations: [{name: End, position_m: 7000}]}",
       "driver={stops: [{station: End}]}", "duration_s=1200"};
-  const Trip trip = Run(line);
+  const Trip trip = TripOf(line);
   EXPECT_LT(trip.FastestOverLimit(), 0.0);
   EXPECT_LT(std::abs(trip.end_mps), 1e-3);
   EXPECT_NEAR(trip.end_m, 7000.0, 5.0);
-  EXPECT_EQ(Run(line, 2).digest, trip.digest);
+  EXPECT_EQ(TripOf(line, 2).digest, trip.digest);
 }
 
 TEST(BuiltInDriver, GoesOnAfterAStop) {
   const Trip trip =
-      Run({"driver={speed_kmh: 40, stops: [{position_m: 1500, dwell_s: 60}, {position_m: 3000}]}",
-           "duration_s=900"});
+      TripOf({"driver={speed_kmh: 40, stops: [{position_m: 1500, dwell_s: 60}, {position_m: 3000}]}",
+              "duration_s=900"});
   double stood_s = 0.0;
   for (std::size_t i = 0; i < trip.time_s.size(); ++i) {
     if (std::abs(trip.position_m[i] - 1500.0) < 5.0 && std::abs(trip.speed_kmh[i]) < 0.01) stood_s += 1.0;
@@ -230,17 +230,17 @@ TEST(BuiltInDriver, GoesOnAfterAStop) {
 }
 
 TEST(BuiltInDriver, StopsATrainOfManyWagonsAndOneThatIsLight) {
-  const Trip heavy =
-      Run({"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
-           "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 4000}]}",
-           "duration_s=900"});
+  const Trip heavy = TripOf(
+      {"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
+       "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 4000}]}",
+       "duration_s=900"});
   EXPECT_LT(std::abs(heavy.end_mps), 1e-6);
   EXPECT_NEAR(heavy.end_m, 4000.0, 10.0);
-  const Trip light =
-      Run({"train={name: light, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper_empty, count: "
-           "20}]}",
-           "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 3000}]}",
-           "duration_s=700"});
+  const Trip light = TripOf(
+      {"train={name: light, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper_empty, count: "
+       "20}]}",
+       "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 3000}]}",
+       "duration_s=700"});
   EXPECT_LT(std::abs(light.end_mps), 1e-6);
   EXPECT_NEAR(light.end_m, 3000.0, 10.0);
 }
@@ -262,7 +262,7 @@ TEST(BuiltInDriver, TakesATrainOfTwoKilometresOverTheOreLine) {
 
 TEST(BuiltInDriver, DoesNothingAfterAnEmergency) {
   const Trip trip =
-      Run({"commands=[{time_s: 30, kind: emergency}]", "driver={speed_kmh: 40}", "duration_s=200"});
+      TripOf({"commands=[{time_s: 30, kind: emergency}]", "driver={speed_kmh: 40}", "duration_s=200"});
   EXPECT_LT(std::abs(trip.end_mps), 1e-6);
   for (const GivenCommand& given : trip.given) {
     if (given.exchange < 6000) continue;
@@ -323,9 +323,9 @@ TEST(GroupNames, OfCommandsMeanTheirLocomotives) {
       "3}, "
       "{vehicle: c44ac_trailing, name: remote}, {vehicle: hopper, count: 3}]}";
   const std::string by_name = train, commands = "commands=[{time_s: 1, kind: throttle, notch: 4, ";
-  const Trip named = Run({train, commands + "group: remote}]", "duration_s=20"});
-  const Trip numbered = Run({train, commands + "vehicles: [5]}]", "duration_s=20"});
-  const Trip all = Run({train, commands + "vehicles: []}]", "duration_s=20"});
+  const Trip named = TripOf({train, commands + "group: remote}]", "duration_s=20"});
+  const Trip numbered = TripOf({train, commands + "vehicles: [5]}]", "duration_s=20"});
+  const Trip all = TripOf({train, commands + "vehicles: []}]", "duration_s=20"});
   EXPECT_EQ(named.digest, numbered.digest);
   EXPECT_NE(named.digest, all.digest);
   const std::string error = ErrorsOf({train, commands + "group: remot}]"});
@@ -339,11 +339,11 @@ TEST(StartStates, TheBrakeHasItsPressureAndHoldsTheTrainOnAGrade) {
                                           "duration_s=60"};
   std::vector<std::string> applied = grade;
   applied.push_back("initial_reduction_kpa=100");
-  EXPECT_LT(std::abs(Run(applied).end_mps), 1e-3);
-  EXPECT_GT(Run(grade).end_mps, 3.0);  // released: 60 s at 0.1 m/s2, less resistance
+  EXPECT_LT(std::abs(TripOf(applied).end_mps), 1e-3);
+  EXPECT_GT(TripOf(grade).end_mps, 3.0);  // released: 60 s at 0.1 m/s2, less resistance
   std::vector<std::string> released = applied;
   released.push_back("commands=[{time_s: 5, kind: release}]");
-  EXPECT_GT(Run(released).end_mps, 1.0);
+  EXPECT_GT(TripOf(released).end_mps, 1.0);
 }
 
 TEST(StartStates, LocomotivesBeginWithTheSteadyEffortOfTheirNotch) {
