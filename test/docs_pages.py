@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The pages: their links, their spelling, and every command and program in them, run as a reader would.
 
-usage: docs_pages.py [--short | --long] [--gtest_output=xml:FILE] [TestCase.test ...]
+usage: docs_pages.py [--guide] [--short | --long] [--gtest_output=xml:FILE] [TestCase.test ...]
 
 A fenced block of `bash` or `python` is run; the blocks of a page one after the other, in one shell, in a folder that looks like
 the workspace with its environment sourced. Comments in the page, which no reader sees, say what is different:
@@ -43,8 +43,8 @@ PROGRAMS = (
     "apt-get export make parallel ros2 rosbag rosbash roscore roslaunch rosmsg rosnode rosrun rosservice rosparam rostopic "
     "rsync source ssh sudo train_sim dpkg"
 ).split()
-LONG = "--long" in sys.argv
-sys.argv = [word for word in sys.argv if word not in ("--long", "--short")]
+LONG, GUIDE = "--long" in sys.argv, "--guide" in sys.argv  # GUIDE: the commands of docs/guide; else those of all other pages
+sys.argv = [word for word in sys.argv if word not in ("--long", "--short", "--guide")]
 COMMENT = re.compile(r"<!-- (commands|run): (.*?) -->\s*$")
 FENCE = re.compile(r"( *)```+ *(.*?)\s*$")
 
@@ -296,7 +296,7 @@ def add_tests():
         return test
 
     for page in PAGES:
-        if script(page):
+        if (LONG or GUIDE == (page.parent.name == "guide")) and script(page):
             name = re.sub(r"\W", "_", str(page.relative_to(ROOT).with_suffix("")))
             setattr(Commands, f"test_{name}", test_of(page))
 
@@ -319,4 +319,6 @@ if __name__ == "__main__":
         sys.exit("docs_pages.py: there is no codespell here: apt-get install codespell")
     if LONG or len(sys.argv) > 1 and not sys.argv[1].startswith("--gtest"):
         unittest.main(verbosity=2, argv=[sys.argv[0]] + [a for a in sys.argv[1:] if not a.startswith("--gtest")])
-    rosunit.unitrun("train_brake", "docs_pages", "__main__")
+    if GUIDE:
+        del Links, Marks, Spelling
+    rosunit.unitrun("train_brake", "docs_guide" if GUIDE else "docs_pages", "__main__")
