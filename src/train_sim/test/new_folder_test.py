@@ -16,7 +16,7 @@ import xml.etree.ElementTree as ElementTree
 
 import rosunit
 
-TRAIN_SIM, CONFIG = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
+TRAIN_SIM, CONFIG = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
 TOOLS = CONFIG.parent / "tools"
 
 
