@@ -501,7 +501,9 @@ TEST(PneumaticBrake, ConvergesInSteps) {
   const std::vector<double> errors = Errors(variants);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     std::printf("steps of %g ms: %.3f kPa\n", 5.0 / (1 << i), 1e-3 * errors[i]);
-    if (i > 0) EXPECT_LT(errors[i], 0.7 * errors[i - 1]);
+    if (i > 0) {
+      EXPECT_LT(errors[i], 0.7 * errors[i - 1]);
+    }
   }
   EXPECT_LT(errors[0], 2e3);
 }
@@ -512,7 +514,9 @@ TEST(PneumaticBrake, ConvergesInCells) {
   const std::vector<double> errors = Errors(variants);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     std::printf("%d cells: %.3f kPa\n", 1 << i, 1e-3 * errors[i]);
-    if (i > 0) EXPECT_LT(errors[i], 0.8 * errors[i - 1]);
+    if (i > 0) {
+      EXPECT_LT(errors[i], 0.8 * errors[i - 1]);
+    }
   }
   EXPECT_LT(errors[1], 3e3);  // two are enough
 }

@@ -25,7 +25,7 @@ void SetBrakeHandle(double initial_reduction_kpa, const std::vector<DriverComman
   view.emergency = false;
   double newest_s = 0.0;
   const auto take = [&](const DriverCommand& command, double at_s) {
-    if (command.IsOfLocomotives() || at_s > time_s || at_s < newest_s) return;
+    if (!command.IsOfTrainBrake() || at_s > time_s || at_s < newest_s) return;
     newest_s = at_s;
     if (view.emergency && command.kind != DriverCommandKind::kRelease) return;
     view.emergency = command.kind == DriverCommandKind::kEmergency;
