@@ -264,7 +264,8 @@ void PrintMarkdown(const Reference& reference) {
       "Editors that know the YAML language server complete and check these keys: the first line\n"
       "`# yaml-language-server: $schema=../schema/vehicle.schema.json` of a file names its schema, one of "
       "those in\n"
-      "`config/schema/`. The schema knows types, bounds and conditions; `train_sim check` judges all "
+      "`config/schema/`; VS Code finds them for files in this workspace by itself. The schema knows types, "
+      "bounds and conditions; `train_sim check` judges all "
       "rules.\n\n");
   for (const FileKind& kind : reference.kinds())
     train_console::Print("- [{}](#{}): {}\n", kind.name, kind.name, kind.meaning);

@@ -141,6 +141,13 @@ class Schema(unittest.TestCase):
                 files += 1
         self.assertGreater(files, 80)
 
+    def test_editors_find_the_schema_of_every_shipped_file(self):
+        settings = json.loads((ROOT / ".vscode" / "settings.json").read_text())["yaml.schemas"]
+        for kind, folder in KINDS.items():
+            self.assertEqual(settings.get(f"./config/schema/{kind}.schema.json"), f"**/{folder}/*.yaml")
+        for schema in settings:
+            self.assertTrue((ROOT / schema).exists(), schema)
+
     def test_refuses_what_the_reader_refuses(self):
         # File, what is changed, what it becomes; a word of the reader's complaint.
         cases = [
