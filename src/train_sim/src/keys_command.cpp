@@ -176,7 +176,9 @@ class Reference {
 
   std::string Example(const Line& line) const {
     const auto found = examples_.find(WithoutIndices(line.path));
-    return found == examples_.end() ? "" : fmt::format("{} ({})", found->second.value, found->second.file);
+    if (found == examples_.end()) return "";
+    const auto& [value, file] = found->second;
+    return file.empty() ? value : fmt::format("{} ({})", value, file);
   }
 
   void PrintText(const std::vector<Line>& lines) const {

@@ -112,6 +112,16 @@ class Reference(unittest.TestCase):
                 f"config/schema/{kind}.schema.json is stale; {RENEW}",
             )
 
+    def test_every_value_has_a_default_or_an_example(self):
+        rows = re.findall(r"^\| `([^`]+)` \| (.*?) \| (.*?) \| (.*?) \| (.*) \| (.*?) \|$", keys("--markdown"), re.M)
+        self.assertGreater(len(rows), 500)
+        without = [
+            key
+            for key, unit, value, default, meaning, example in rows
+            if not example and not default.startswith("`") and "map" not in value
+        ]
+        self.assertEqual(without, [])
+
     def test_a_path_is_that_of_a_file_of_a_setting_or_its_end(self):
         whole = keys("coupler.draft_gear.slack_m")
         self.assertIn("coupler.draft_gear.slack_m  [m]\n    total free play of the connection\n", whole)

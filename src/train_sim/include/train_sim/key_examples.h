@@ -11,11 +11,11 @@ namespace train_sim {
 /// A value of a key that stands in a file.
 struct KeyExample {
   std::string value;  ///< as YAML
-  std::string file;   ///< "vehicles/ore_wagon.yaml"
+  std::string file;   ///< "vehicles/ore_wagon.yaml"; empty: no shipped file has it
 };
 
-/// An example of each key that any file in the folders of TRAIN_BRAKE_CONFIG has, by path:
-/// "vehicle.wheel_rail.adhesion", entries of lists without an index.
+/// Examples from the files in the folders of TRAIN_BRAKE_CONFIG, by path: "vehicle.wheel_rail.adhesion", entries of lists
+/// without an index. For keys that none of them has, those of the same key elsewhere in the kind, or made ones.
 std::map<std::string, KeyExample> FindExamples(const std::vector<train_dynamics::config::FileKind>& kinds);
 
 }  // namespace train_sim
