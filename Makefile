@@ -140,7 +140,7 @@ test-deb: deb ## ... installed, run and removed on a bare Debian 12 (debootstrap
 
 .PHONY: site
 site: ## the pages and the C++ API as a site in site/ (MkDocs, Doxygen; no network)
-	@tools/install_packages.sh packages_site.txt
+	@tools/install_packages.sh packages_doc.txt packages_site.txt
 	@tools/site.py
 
 .PHONY: check-deps

@@ -37,6 +37,7 @@ ELSEWHERE = {
     "machines": "needs several machines; make test-cluster",
     "root": "installs or removes packages; make test-deb",
     "hours": "measures everything; make bench",
+    "tested": "has a test of its own: nodes of one's own beside a train",
     "suite": "is the test suite itself",
 }
 PROGRAMS = (

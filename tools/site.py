@@ -39,27 +39,8 @@ def main():
     if done.returncode:
         sys.exit("site.py: MkDocs found faults in the pages")
     (ROOT / "site" / "api").mkdir(exist_ok=True)
-    include = " ".join(str(folder) for folder in sorted((ROOT / "src").glob("*/include")))
-    settings = f"""
-PROJECT_NAME = train_brake
-INPUT = {include}
-RECURSIVE = YES
-FILE_PATTERNS = *.h
-EXCLUDE_PATTERNS = */kernels/*
-OUTPUT_DIRECTORY = {ROOT / "build_site"}
-HTML_OUTPUT = {ROOT / "site" / "api"}
-GENERATE_LATEX = NO
-EXTRACT_ALL = YES
-JAVADOC_AUTOBRIEF = YES
-QUIET = YES
-WARNINGS = NO
-WARN_IF_INCOMPLETE_DOC = NO
-STRIP_FROM_PATH = {ROOT / "src"}
-SORT_MEMBER_DOCS = NO
-HAVE_DOT = NO
-SEARCHENGINE = YES
-"""
-    subprocess.run(["doxygen", "-"], input=settings, text=True, check=True)
+    settings = (ROOT / "Doxyfile").read_text() + f"\nOUTPUT_DIRECTORY = {ROOT / 'build_site'}\nHTML_OUTPUT = {ROOT / 'site' / 'api'}\n"
+    subprocess.run(["doxygen", "-"], input=settings, text=True, cwd=ROOT, check=True)
     print(f"site: wrote {ROOT / 'site' / 'index.html'}, API in {ROOT / 'site' / 'api' / 'index.html'}")
 
 
