@@ -72,11 +72,16 @@ exec "\$@"
 ENV
 chmod +x "$work/env.sh"
 
+# The digest in a summary.json.
+digest_in() {
+  /usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["state_digest"])' "$1"
+}
+
 . devel/setup.bash
 export HOME=$work/home ROS_IP=$net.1 ROS_MASTER_URI=http://$net.1:11311
 scenario=$workspace/config/scenarios/emergency.yaml
 change="duration_s=1"
-expected=$(rosrun train_sim train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
+expected=$(rosrun train_sim train_sim run "$scenario" --set $change | digest_in /dev/stdin)
 
 # Where the wagon nodes really are, while they run.
 watch_placement() {
@@ -98,7 +103,7 @@ timeout 120 roslaunch train_brake emergency.launch nodes:=$ranks machines:="${ad
   user:=root out:="$work/out" set:="$change" shared_memory:=false exit_status_file:="$work/status" >"$work/launch.log" 2>&1
 kill $watcher 2>/dev/null
 code=$(cat "$work/status" 2>/dev/null || echo "none")
-got=$(sed -nE 's/.*"state_digest": "(.*)".*/\1/p' "$work/out/summary.json" 2>/dev/null)
+got=$(digest_in "$work/out/summary.json" 2>/dev/null)
 placed=$(for i in $(seq $machines); do cat "$work/placed$i" 2>/dev/null || echo 0; done | xargs)
 left=$(for i in $(seq $machines); do ip netns pids ${name}m$i; done | xargs -r ps -o comm= -p | grep -c wagon_node)
 
@@ -132,7 +137,7 @@ echo "study: 6 runs over $hosts machines, the table of one machine"
 # Two runs that lose a machine: first its link, for a while (a node that has replied before is not even missed); then
 # the machine itself, for good, and its two nodes are started by hand on another one.
 change="duration_s=8"
-expected=$(rosrun train_sim train_sim run "$scenario" --set $change | sed -nE 's/.*"state_digest": "(.*)".*/\1/p')
+expected=$(rosrun train_sim train_sim run "$scenario" --set $change | digest_in /dev/stdin)
 
 lose_link() {
   ip link set ${name}v2 down
@@ -161,7 +166,7 @@ for loss in lose_link lose_machine; do
   $loss
   wait $launch
   code=$(cat "$work/status" 2>/dev/null || echo "none")
-  got=$(sed -nE 's/.*"state_digest": "(.*)".*/\1/p' "$work/out/summary.json" 2>/dev/null)
+  got=$(digest_in "$work/out/summary.json" 2>/dev/null)
   back=$(grep -c 'is back after' "$work/$loss.log")
   printf '%-19s exit code %s, digest %s (in one process %s), %s nodes brought back\n' $loss "$code" "$got" "$expected" $back
   [ "$code" = 0 ] && [ "$got" = "$expected" ] && [ "$back" -ge 1 ] || failed
