@@ -158,7 +158,7 @@ class Sweep(InAFolder):
     def test_ctrl_c_ends_the_runs_and_what_is_done_is_kept(self):
         (self.here / "cases.csv").write_text("duration_s\n1\n900000\n900000\n")
         process = subprocess.Popen(["rosrun", "train_brake", "sweep", str(self.scenario), str(self.out), "--list",
-                                    str(self.here / "cases.csv"), "--jobs", "2"], start_new_session=True, stderr=subprocess.PIPE, text=True)
+                                    str(self.here / "cases.csv"), "--jobs", "2", "--set", "track=level"], start_new_session=True, stderr=subprocess.PIPE, text=True)
         deadline = time.monotonic() + 60
         while not list(self.out.glob("runs/0003/log")) and time.monotonic() < deadline:
             time.sleep(0.05)
