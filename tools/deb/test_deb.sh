@@ -10,6 +10,7 @@ root=${2:-$(mktemp -d)/root}
 mirror=${MIRROR:-http://deb.debian.org/debian}
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" "$mirror" >/dev/null
 cp /etc/resolv.conf "$root/etc/resolv.conf"
+[ -e "$root/etc/hosts" ] || echo "127.0.0.1 localhost" >"$root/etc/hosts"  # a bare root has none, and ROS asks for it
 [ ! -e /etc/apt/apt.conf ] || cp /etc/apt/apt.conf "$root/etc/apt/"
 mkdir -p "$root/packages" && cp "$packages"/train-brake_*.deb "$root/packages/"
 mount --bind /proc "$root/proc"; mount --bind /dev "$root/dev"; mount -t tmpfs tmpfs "$root/dev/shm"
