@@ -6,15 +6,28 @@
 set -eo pipefail
 packages=$(realpath "$1")
 [ "$(id -u)" = 0 ] || { echo "test_deb: needs root" >&2; exit 1; }
-root=${2:-$(mktemp -d)/root}
+made=  # a folder that this script made and removes at its end; a ROOT that was given is never removed
+if [ -n "$2" ]; then
+  root=$(realpath "$2")
+else
+  made=$(mktemp -d) root=$made/root
+fi
+readonly made root
 mirror=${MIRROR:-http://deb.debian.org/debian}
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" "$mirror" >/dev/null
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 [ -e "$root/etc/hosts" ] || echo "127.0.0.1 localhost" >"$root/etc/hosts"  # a bare root has none, and ROS asks for it
 [ ! -e /etc/apt/apt.conf ] || cp /etc/apt/apt.conf "$root/etc/apt/"
 mkdir -p "$root/packages" && cp "$packages"/train-brake_*.deb "$root/packages/"
+# Positional parameters would be those of a function that fails: none here. Nothing is removed while anything is mounted below it.
+end() {
+  for mounted in dev/shm dev proc; do
+    ! mountpoint -q "$root/$mounted" || umount "$root/$mounted" || { echo "test_deb: $root/$mounted is still mounted" >&2; return; }
+  done
+  [ -z "$made" ] || rm -rf --one-file-system "$made"
+}
+trap end EXIT
 mount --bind /proc "$root/proc"; mount --bind /dev "$root/dev"; mount -t tmpfs tmpfs "$root/dev/shm"
-trap 'umount "$root/dev/shm" "$root/dev" "$root/proc"; [ -n "$2" ] || rm -rf "$(dirname "$root")"' EXIT
 run() { echo "== $*"; chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive bash -eo pipefail -c "$*"; }
 
 run 'apt-get -q update >/dev/null; apt-get -q install -y --no-install-recommends /packages/train-brake_*.deb >/tmp/apt.log 2>&1 || { tail -20 /tmp/apt.log; exit 1; }'
