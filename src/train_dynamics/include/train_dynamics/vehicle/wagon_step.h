@@ -28,9 +28,16 @@ void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const V
 /// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) and a plain track (Track::IsPlain) do not
 ///               have, and the loads that few trains have (Given::kWhereUsed); without these the bits are the same and
 ///               the time is less
-template <bool kAll, class T, int kPerBogie>
+/// @tparam kReacts  whether torques on wheelsets may react on the vehicle (BrakeReaction)
+template <bool kAll, bool kReacts, class T, int kPerBogie>
 void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                    double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
+
+/// Whether torques on the wheelsets react on the vehicle.
+template <int kPerBogie>
+bool Reacts(const BogieVehicle<kPerBogie>& wagon) {
+  return wagon.params.brake_rigging.reaction != BrakeReaction::kNone;
+}
 
 // ---------------------------------------------------------------------------------------------------------------------
 
@@ -376,14 +383,14 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
 
 /// Books the work of the torques on the wheelsets: of each with the rotation of the wheelset relative to the
 /// body that it reacts on.
-template <bool kAll, class T, int kPerBogie>
+template <bool kAll, bool kReacts = kAll, class T, int kPerBogie>
 void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                  const WheelsetStep<T, kPerBogie>& wheelsets, double dt, const BodyVector<T, kPerBogie>& v0,
                  const BodyVector<T, kPerBogie>& v1, VehicleWork<T>& work) {
   const BrakeReaction reaction = w.params.brake_rigging.reaction;
   // Paths at the tread [m]: relative to the rail, to the frame, to what the shoes hang on.
   std::array<T, kWheelsetsOf<kPerBogie>> of_frame = wheelsets.path, of_shoes = wheelsets.path;
-  if (reaction != BrakeReaction::kNone) {
+  if (kReacts && reaction != BrakeReaction::kNone) {
     const double half = 0.5 * dt * w.rolling.radius_m;
     const T carbody = half * (v0.pitch[kCarbody] + v1.pitch[kCarbody]);
     for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -460,7 +467,7 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   work.gravity = work.gravity - (0.5 * dt * kGravity) * outer.grade * mass_path;
 }
 
-template <bool kAll, class T, int kPerBogie>
+template <bool kAll, bool kReacts, class T, int kPerBogie>
 void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads,
                    double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
   const BodyVector<T, kPerBogie> v0 = s.velocity;
@@ -481,7 +488,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   AddOuterForces(w, outer, force);
 
   const WheelsetStep<T, kPerBogie> wheelsets = StepWheelsets<kAll>(w, rail, outer, force, dt, v0, v1, output);
-  AddReactions<kAll>(w, outer, wheelsets, force);
+  if (kReacts) AddReactions<kAll>(w, outer, wheelsets, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
   Kick(w, force, dt, kCarbody, kWheelset1, v1);
@@ -497,7 +504,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
 
   dissipative.wedge = friction.wedge;
   BookWork<kAll>(w, outer, wheelsets, dissipative, rate0, dt, v0, v1, s.work);
-  BookTorques<kAll>(w, outer, wheelsets, dt, v0, v1, s.work);
+  BookTorques<kAll, kReacts>(w, outer, wheelsets, dt, v0, v1, s.work);
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     s.creep_work[i] = s.creep_work[i] + wheelsets.creep[i];
     s.brake_work[i] = s.brake_work[i] + wheelsets.brake[i];
@@ -511,7 +518,9 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
   const bool has_rare_loads = AnyOf(loads.traction_n != zero) || AnyOf(loads.dynamic_brake_n != zero) ||
                               AnyOf(loads.curving_resistance_n != zero);
   const bool is_plain = w.IsPlain() && track.IsPlain() && !has_rare_loads;
-  const auto step = is_plain ? &StepWagonWith<false, T, kPerBogie> : &StepWagonWith<true, T, kPerBogie>;
+  const auto step = !is_plain   ? &StepWagonWith<true, true, T, kPerBogie>
+                    : Reacts(w) ? &StepWagonWith<false, true, T, kPerBogie>
+                                : &StepWagonWith<false, false, T, kPerBogie>;
   step(w, track, loads, dt, s, output);
 }
 

@@ -9,13 +9,13 @@
 /// with it by name, so: packs and plain pointers only.
 namespace train_dynamics {
 
-template <bool kAll, class T, int kPerBogie>
+template <bool kAll, bool kReacts, class T, int kPerBogie>
 void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
           WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
-  StepWagonWith<kAll>(wagon, track, loads, dt, state, output);
+  StepWagonWith<kAll, kReacts>(wagon, track, loads, dt, state, output);
 }
 
-template <bool kAll, class T>
+template <bool kAll, bool kReacts, class T>
 void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
           LtdState<T>& state, LtdOutput<T>* output) {
   StepLtdWith<kAll>(vehicle, track, loads, dt, state, output);
@@ -49,6 +49,8 @@ bool IsPlain(const BogieVehicle<kPerBogie>& wagon, const Track& track) {
   return wagon.IsPlain() && track.IsPlain();
 }
 
+inline bool Reacts(const LtdVehicle& /*vehicle*/) { return false; }
+
 /// Whether a load that few trains have is given.
 template <class T>
 bool HasRareLoads(const LoadPlaces& places) {
@@ -79,7 +81,8 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
 }
 
 /// @tparam kAll  with the loads that few trains have, and with what a plain vehicle or a plain track does not have
-template <class T, bool kAll, class Vehicle>
+/// @tparam kReacts  see StepWagonWith
+template <class T, bool kAll, bool kReacts, class Vehicle>
 [[gnu::flatten]] bool StepPacksUnder(const Vehicle& __restrict vehicle, const Track& __restrict track,
                                      double dt, int steps, int packs, const LoadPlaces& load_places,
                                      const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
@@ -107,9 +110,9 @@ template <class T, bool kAll, class Vehicle>
       take(load_places.traction_share, traction_share, loads.traction_share);
     }
     for (int step = 1; step < steps; ++step) {
-      Step<kAll>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
+      Step<kAll, kReacts>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
     }
-    Step<kAll>(vehicle, track, loads, dt, pack, output);
+    Step<kAll, kReacts>(vehicle, track, loads, dt, pack, output);
     const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
     ForEachReplyField([first](const RecordInfo& field, const auto& value,
                               double* place) { StoreNumbers(value, place + first * field.numbers); },
@@ -122,8 +125,10 @@ template <class T, bool kAll, class Vehicle>
 template <class T, class Vehicle>
 bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
-  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle, track) ? &StepPacksUnder<T, true, Vehicle>
-                                                                       : &StepPacksUnder<T, false, Vehicle>;
+  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle, track)
+                        ? &StepPacksUnder<T, true, true, Vehicle>
+                    : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
+                                      : &StepPacksUnder<T, false, false, Vehicle>;
   return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
 }
 
