@@ -62,7 +62,8 @@ class BagFile::Scan {
   /// One record; a chunk is entered, as its content is records. @return false at the end, or where the file is cut off
   bool Record() {
     const std::optional<std::string> header = TakeText(kLargestHeader);
-    if (!header) return false;
+    // A record has a header: zeros are what a file system appends to a file in a loss of power.
+    if (!header || header->empty()) return false;
     const std::optional<Fields> fields = FieldsOf(*header);
     const std::optional<std::string> size = Take(sizeof(std::uint32_t));
     if (!fields) throw UnreadableBag("is damaged at byte " + std::to_string(at_));

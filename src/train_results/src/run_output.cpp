@@ -47,10 +47,15 @@ bool HasMark(const fs::path& folder) {
 }
 
 void MakeFolder(const fs::path& folder) {
-  if (fs::exists(folder) && !fs::is_directory(folder)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (fs::exists(status) && !fs::is_directory(status)) {
     throw std::runtime_error(folder.string() + " is not a folder: results cannot go there");
   }
-  fs::create_directories(folder);
+  fs::create_directories(folder, error);
+  if (!error) return;
+  throw std::runtime_error("the folder " + folder.string() +
+                           " cannot be made for the results: " + error.message());
 }
 
 /// Clears it of the results of an earlier run, but of nothing that a user may have put there.

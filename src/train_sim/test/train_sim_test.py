@@ -275,6 +275,17 @@ class TrainSimTest(unittest.TestCase):
             self.assertIn(f"must be a plain number of seconds >= 0, got '{interval}'", done.stderr)
             self.assertFalse(self.out.exists())
 
+    def test_folders_that_cannot_be_made_are_told(self):
+        here = pathlib.Path(self.folder.name)
+        (here / "file").write_text("")
+        (here / "loop").symlink_to("loop")
+        (here / "dangling").symlink_to("/nowhere/at/all")
+        for name in ("file/below", "loop", "dangling", "x" * 300, "file"):
+            done = train_sim("run", DIP, "--out", here / name, *SHORT)
+            self.assertEqual(1, done.returncode, name)
+            self.assertRegex(done.stderr, f"{name}( cannot be made for the results: [A-Z]| is not a folder)")
+            self.assertNotIn("filesystem error", done.stderr)
+
     def test_a_replaced_result_is_told(self):
         self.assertNotIn("replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
         self.assertIn("out held the results of a run, which are replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
@@ -795,6 +806,13 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("config.yaml is not the scenario that the bag holds, which is repeated", self.verify(self.out, code=0))
         self.rewrite(bag, lambda topic, message: None if topic == "/train/scenario" else (topic, message)).replace(bag)
         self.assertIn("config.yaml:1: dt_s must be a number", self.verify(self.out, code=6))
+
+    def test_verify_ends_at_zeros_behind_the_bag(self):
+        """As a file system leaves them after a loss of power: as many as there may be."""
+        self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
+        with open(self.out / "train.bag", "ab") as bag:
+            bag.truncate(bag.tell() + 10**12)
+        self.assertIn("same: 101 of 101 records", self.verify(self.out, code=0))
 
     def test_verify_two_runs_in_a_bag(self):
         self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
