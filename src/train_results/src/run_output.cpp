@@ -140,12 +140,12 @@ RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& 
       identity_(IdentityOf(scenario)),
       checkpoint_exchanges_(CheckpointExchanges(options, scenario)) {
   if (folder_.empty()) return;
+  MakeFolder(folder_);
   for (const fs::path& input : inputs) {
     if (FolderOf(input) != fs::weakly_canonical(fs::absolute(folder_))) continue;
     throw std::runtime_error(options.folder + " is the folder of " + input.string() +
                              ", of which the scenario is made: choose another for the results");
   }
-  MakeFolder(folder_);
   lock_.emplace(folder_);
   if (HasMark(folder_) && fs::exists(folder_ / kCheckpointFile) && !fs::exists(folder_ / "summary.json")) {
     options.complain(folder_.string() + " held a run that was broken off; it is replaced (--resume goes on)");
