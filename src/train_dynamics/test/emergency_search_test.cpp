@@ -63,11 +63,12 @@ TEST(EmergencySearch, FindsNoneInAnyShippedTrain) {
   }
 }
 
-// What it looks for exists: wide passages for quick service make a long train trip itself.
+// What it looks for exists: large volumes and wide passages of quick service make a long train trip itself.
 TEST(EmergencySearch, FindsThoseOfWidePassages) {
   PneumaticBrakeParams params;
-  params.valves[0].direct.quick_service_opening_mm = 3.2;
-  params.valves[0].direct.limiting_opening_mm = 1.0;
+  params.valves[0].direct.quick_service_volume_l = 3.0;
+  params.valves[0].direct.quick_service_kpa = 200.0;  // 600 J from the 12 l of a vehicle's pipe: a fall by 50 kPa
+  params.valves[0].direct.quick_service_opening_mm = 6.0;
   EmergencySearch search;
   search.trials = 5;
   const auto found = FindUndesiredEmergencies(params, std::vector<double>(150, 13.0), search);

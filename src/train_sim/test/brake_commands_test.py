@@ -55,8 +55,8 @@ class BrakeCommands(unittest.TestCase):
         done = train_sim("air-test", SERVICE, *FEW, "--set", "brake.pipe.leakage_g_per_s_km=100")
         self.assertEqual(1, done.returncode)
         self.assertRegex(done.stdout, r"leakage: tail's fall in a minute of lap.*FAILED")
-        done = train_sim("air-test", SERVICE, "--trials", 1, "--set", "brake.valves[0].direct.quick_service_opening_mm=3.2", "--set",
-                         "brake.valves[0].direct.limiting_opening_mm=1.0")
+        done = train_sim("air-test", SERVICE, "--trials", 1, "--set", "brake.valves[0].direct.quick_service_opening_mm=6", "--set",
+                         "brake.valves[0].direct.quick_service_volume_l=3", "--set", "brake.valves[0].direct.quick_service_kpa=200")
         self.assertEqual(1, done.returncode)
         self.assertRegex(done.stdout, r"trial 1: vehicle \d+ at [\d.]+ s, pipe at first 600.0 kPa, after .*kPa")
 

@@ -10,6 +10,9 @@ constexpr double kDischarge = 0.8;                  ///< of every opening [A]
 constexpr double kHighRetainedPa = 20.0 * 6894.76;  ///< [S]
 constexpr double kLowRetainedPa = 10.0 * 6894.76;   ///< [S]
 constexpr double kSlowDirectOpeningM = 1.45e-3;     ///< empties a cylinder in some 86 s [S: the time]
+/// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: a train that is
+/// being charged may fall below it by what its own reservoirs take [A].
+constexpr double kEcpArmedAbovePa = 135e3;
 constexpr double kLn10_5 = 2.3513752571634776;
 
 // ln(x) for x >= 1, at set-up only: Halley's steps on e^y = x.
@@ -252,7 +255,7 @@ double ControlValve::StepEcp(const TrainLine& line, ControlValveState& s, double
                              double pipe_m3) const {
   const EcpParams& e = p_.ecp;
   PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.auxiliary_pa, auxiliary_m3_);
-  const bool charged = s.quick_action_pa > kAtmospherePa + e.emergency_pipe_kpa * 1e3;
+  const bool charged = s.quick_action_pa > kAtmospherePa + e.emergency_pipe_kpa * 1e3 + kEcpArmedAbovePa;
   if (pipe_pa > s.quick_action_pa)
     s.quick_action_pa = pipe_pa;  // the highest so far: an empty train is no emergency
   const bool lost = charged && pipe_pa < kAtmospherePa + e.emergency_pipe_kpa * 1e3;
