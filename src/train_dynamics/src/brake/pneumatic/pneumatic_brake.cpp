@@ -15,7 +15,7 @@ namespace {
 constexpr double kDischarge = 0.8;            // [A]
 constexpr double kRelayBand = 10e3;           // [Pa] of error over which a relay opens fully [A]
 constexpr double kRadioPatience = 45.0;       // [s] [A]
-constexpr double kLapTime = 5.0;              // [s] for which a remote valve closes when it laps [A]
+constexpr double kLapRate = 10e3;             // [Pa/s] at which a lapping remote valve feeds less [A]
 constexpr double kLongestForOneValve = 38.1;  // [m] AAR S-401 [S]
 constexpr double kRiseRate = 100e3;           // [Pa/s] of the equalising reservoir [A]
 
@@ -372,20 +372,20 @@ void PneumaticBrake::StepSource(int i) {
     out = PassToPlace(emergency_, dt_s_, pressure, volume, kAtmospherePa);
   } else {
     Equalise(source, now_s);
-    // A remote valve that has heard nothing for so long closes: not at once, or the end of its flow would be a fall of the
-    // pipe beside it that an emergency needs.
-    double open = 1.0;
+    // A remote valve that has heard nothing for so long laps: it feeds less and less, or the end of its flow would be a fall
+    // of the pipe beside it that is an emergency's.
+    double lapped_s = 0.0;
     if (p.kind == PipeSourceKind::kRemote && now_s < p.radio_lost_to_s)
-      open = Clamp(1.0 - (now_s - p.radio_lost_from_s - kRadioPatience) / kLapTime, 0.0, 1.0);
-    const double wanted = kAtmospherePa + source.equalising_pa;
+      lapped_s = Max(0.0, now_s - p.radio_lost_from_s - kRadioPatience);
+    const double wanted = kAtmospherePa + source.equalising_pa - kLapRate * lapped_s;
     const double error = wanted - pressure;
     const bool applied = source.goal_pa < params_.charged_pressure_kpa * 1e3;
-    if (error > 0.0 && open > 0.0 && (!applied || params_.drivers_valve.pressure_maintaining)) {
+    if (error > 0.0 && (!applied || params_.drivers_valve.pressure_maintaining)) {
       const double reservoir = kAtmospherePa + params_.drivers_valve.main_reservoir_kpa * 1e3;
-      in = RelayFlow(open * charging_, dt_s_, reservoir, pressure, error, volume);
+      in = RelayFlow(charging_, dt_s_, reservoir, pressure, error, volume);
       pressure += in / volume;
-    } else if (error < 0.0 && open > 0.0) {
-      out = RelayFlow(open * exhaust_, dt_s_, pressure, kAtmospherePa, -error, volume);
+    } else if (error < 0.0 && lapped_s == 0.0) {
+      out = RelayFlow(exhaust_, dt_s_, pressure, kAtmospherePa, -error, volume);
       pressure -= out / volume;
     }
   }
