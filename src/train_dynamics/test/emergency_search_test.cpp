@@ -67,7 +67,8 @@ TEST(EmergencySearch, FindsNoneInAnyShippedTrain) {
 TEST(EmergencySearch, FindsThoseOfWidePassages) {
   PneumaticBrakeParams params;
   params.valves[0].direct.quick_service_volume_l = 3.0;
-  params.valves[0].direct.quick_service_kpa = 200.0;  // 600 J from the 12 l of a vehicle's pipe: a fall by 50 kPa
+  params.valves[0].direct.quick_service_kpa =
+      200.0;  // 600 J from the 12 l of a vehicle's pipe: a fall by 50 kPa
   params.valves[0].direct.quick_service_opening_mm = 6.0;
   EmergencySearch search;
   search.trials = 5;
