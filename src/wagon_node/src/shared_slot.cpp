@@ -7,6 +7,7 @@
 namespace wagon_node {
 
 using train_brake_msgs::ExchangeHead;
+using train_brake_msgs::HearsInTurns;
 
 SharedSlot::SharedSlot(const train_brake_msgs::ConfigureRequest& offer)
     : memory_(offer.memory_pid, offer.memory_descriptor, offer.run_id), slot_(offer.memory_slot) {
@@ -21,7 +22,9 @@ bool SharedSlot::Wait(double timeout_s) {
   // There may be a core for each thread of the ranks; but one of them is the master's, who is the next to work.
   const bool has_core =
       head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
-  if (!has_core || !vigil_.Hears(head.requests, heard)) head.requests.Wait(heard, timeout_s);
+  const bool hears =
+      has_core ? vigil_.Hears(head.requests, heard) : HearsInTurns(head.requests, heard, head.turns);
+  if (!hears) head.requests.Wait(heard, timeout_s);
   return memory_.request(slot_).call() != served_;
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <string>
@@ -147,6 +148,27 @@ TEST_F(SharedSlotTest, ServesEachCallOnce) {
     EXPECT_TRUE(master_.reply(1).Read(read, Layout().reply_room));
     EXPECT_EQ(read.exchange, 100 + call);
     EXPECT_FALSE(slot_.Wait(kBriefly));
+  }
+}
+
+TEST_F(SharedSlotTest, SharesItsCoreInTurnsButSleepsInTheEnd) {
+  constexpr std::uint32_t kMany = std::numeric_limits<std::uint32_t>::max();
+  master_.head().threads = kMany;  // more than there are cores
+  std::uint64_t call = 0;
+  for (const std::uint32_t turns : {0u, 1u, 50u, kMany}) {  // the last would take hours
+    master_.head().turns = turns;
+    EXPECT_FALSE(slot_.Wait(kBriefly)) << turns;
+    Call(++call);
+    ASSERT_TRUE(slot_.Wait(kLong)) << turns;
+    slot_.Read(request_);
+    std::thread master([this, next = ++call] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      Call(next);
+    });
+    EXPECT_TRUE(slot_.Wait(kLong)) << turns;
+    slot_.Read(request_);
+    EXPECT_EQ(request_.exchange, call);
+    master.join();
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <linux/futex.h>
 #include <ros/serialization.h>
+#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -98,6 +99,16 @@ class Vigil {
   int to_leave_out_ = kFewest;
 };
 
+/// Leaves the core to others up to so many times, as long as the bell has not rung since its rings were counted. With many
+/// ranks on a core that takes less time than to sleep and be woken, as long as the others are ranks, too; beside other work
+/// each turn may take as long as that wants.
+/// @return whether it has rung
+inline bool HearsInTurns(const Bell& bell, std::uint32_t heard, std::uint32_t turns) {
+  constexpr std::uint32_t kMost = 64;  // so that whoever waits for long sleeps soon
+  for (std::uint32_t turn = 0; turn < std::min(turns, kMost) && bell.rings() == heard; ++turn) sched_yield();
+  return bell.rings() != heard;
+}
+
 /// A message from one process to another, with the number of the call that it belongs to. Its bytes follow it.
 class Letter {
  public:
@@ -143,7 +154,7 @@ class Letter {
 
 /// How the memory is laid out. It begins with this.
 struct ExchangeLayout {
-  static constexpr std::uint64_t kMagic = 0x31706174536e6954;  ///< another one for every other layout
+  static constexpr std::uint64_t kMagic = 0x32706174536e6954;  ///< another one for every other layout
 
   std::uint64_t magic = kMagic;
   std::uint64_t run_id = 0;
@@ -170,6 +181,8 @@ struct ExchangeHead {
   ExchangeLayout layout;
   std::atomic<std::uint32_t> threads;      ///< of the ranks that use the memory
   std::atomic<std::uint32_t> master_core;  ///< that the master runs on
+  std::atomic<std::uint32_t>
+      turns;  ///< that a rank leaves to others before it sleeps, where cores are shared
   Bell requests;
   alignas(kCacheLine) std::atomic<std::int32_t> unreplied;
   std::atomic<std::uint32_t> last_slot;  ///< of the last one to reply

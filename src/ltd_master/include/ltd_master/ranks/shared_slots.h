@@ -4,16 +4,21 @@
 #include <train_brake_msgs/Step.h>
 #include <train_brake_msgs/exchange_memory.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "train_dynamics/train/faster_way.h"
 #include "train_dynamics/train/ranks.h"
 #include "train_dynamics/train/thread_team.h"
 
 namespace ltd_master {
 
 /// The master's end of train_brake_msgs/exchange_memory.h: calls of Step to ranks on the same machine.
+///
+/// Ranks that share cores sleep between two calls, or leave the core to others for some turns first: whichever takes less
+/// time on this machine, beside what else it does (train/faster_way.h).
 ///
 /// Whether a rank is on the same machine, only that rank can tell: it is offered a slot when it is configured,
 /// and either takes it or not.
@@ -62,6 +67,8 @@ class SharedSlots {
   const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
   train_brake_msgs::Vigil vigil_;
   std::uint32_t heard_ = 0;  ///< rings of the bell for replies
+  train_dynamics::FasterWay faster_;
+  std::chrono::steady_clock::time_point begin_, end_;  ///< of the last call
 };
 
 }  // namespace ltd_master
