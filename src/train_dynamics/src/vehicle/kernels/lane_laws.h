@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "train_dynamics/numeric/lanes.h"
 #include "train_dynamics/vehicle/lane_kernels.h"
 #include "train_dynamics/vehicle/wagon_step.h"
@@ -49,8 +51,6 @@ bool IsPlain(const BogieVehicle<kPerBogie>& wagon, const Track& track) {
   return wagon.IsPlain() && track.IsPlain();
 }
 
-inline bool Reacts(const LtdVehicle& /*vehicle*/) { return false; }
-
 /// Whether a load that few trains have is given.
 template <class T>
 bool HasRareLoads(const LoadPlaces& places) {
@@ -83,8 +83,8 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
 /// @tparam kAll  with the loads that few trains have, and with what a plain vehicle or a plain track does not have
 /// @tparam kReacts  see StepWagonWith
 template <class T, bool kAll, bool kReacts, class Vehicle>
-[[gnu::flatten]] bool StepPacksUnder(const Vehicle& __restrict vehicle, const Track& __restrict track,
-                                     double dt, int steps, int packs, const LoadPlaces& load_places,
+[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
+                                     int packs, const LoadPlaces& load_places,
                                      const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
@@ -122,14 +122,28 @@ template <class T, bool kAll, bool kReacts, class Vehicle>
   return AllOf(sound);
 }
 
+/// The same, told that no store changes vehicle or track: what is constant in an LTD vehicle stays in registers. A wagon has
+/// too much of it, which would push its state out.
+template <class T, bool kAll>
+[[gnu::flatten]] bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track,
+                                   double dt, int steps, int packs, const LoadPlaces& loads,
+                                   const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+  return StepPacksUnder<T, kAll, kAll>(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+}
+
 template <class T, class Vehicle>
 bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
-  const auto step = HasRareLoads<T>(loads) || !IsPlain(vehicle, track)
-                        ? &StepPacksUnder<T, true, true, Vehicle>
-                    : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
-                                      : &StepPacksUnder<T, false, false, Vehicle>;
-  return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+  const bool all = HasRareLoads<T>(loads) || !IsPlain(vehicle, track);
+  if constexpr (std::is_same_v<Vehicle, LtdVehicle>) {
+    const auto step = all ? &StepLtdPacks<T, true> : &StepLtdPacks<T, false>;
+    return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+  } else {
+    const auto step = all               ? &StepPacksUnder<T, true, true, Vehicle>
+                      : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
+                                        : &StepPacksUnder<T, false, false, Vehicle>;
+    return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+  }
 }
 
 template <class T, class Vehicle>
