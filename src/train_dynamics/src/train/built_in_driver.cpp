@@ -82,14 +82,24 @@ void MoveLever(const BuiltInDriverParams& p, const DriversTrain& train, double f
     hands.Lever(at - 1);
 }
 
-void MoveHandle(const BuiltInDriverParams& p, const DriversTrain& train, double lacking_n,
+/// Until an application has half of its force [s].
+double AnswerTime(const DriversTrain& train) {
+  int second = 0;
+  while (second < kShareSeconds && train.application_share[second] < 0.5) ++second;
+  return second;
+}
+
+/// @param lacking_n  now, beside the dynamic brake
+/// @param gain_mps   that the speed would have made when an application answers
+void MoveHandle(const BuiltInDriverParams& p, const DriversTrain& train, double lacking_n, double gain_mps,
                 const SpeedGoal& goal, const DriverView& view, Hands& hands) {
   const double v = std::abs(view.speed_mps);
   const double first_n = train.BrakeForce(p, p.first_reduction_kpa, v), now_kpa = view.reduction_kpa;
   const double since_s = hands.time_s - hands.state.handle_s;
   if (now_kpa == 0.0) {
     const bool recharged = hands.time_s - hands.state.released_s >= p.recharge_time_s;
-    if (lacking_n < kBrakeShare * first_n || (!recharged && v < goal.speed_mps + 0.25)) return;
+    const double soon_n = lacking_n + train.moving_mass_kg * gain_mps / p.response_time_s;
+    if (soon_n < kBrakeShare * first_n || (!recharged && v + gain_mps < goal.speed_mps + 0.25)) return;
     const double deeper_kpa = recharged ? 0.0 : p.reduction_step_kpa;
     return hands.Apply(std::min(p.largest_reduction_kpa, ReductionFor(p, train, lacking_n, v) + deeper_kpa));
   }
@@ -318,7 +328,13 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
   const bool may_pull = is_released || (view.reduction_kpa == 0.0 && view.mean_grade > 0.0);
   MoveLever(p, train, force_n + state.air_n, std::abs(v), may_pull, hands);
   const double dynamic_n = -train.Effort(-train.dynamic_brake_notches, std::abs(v));
-  if (state.lever <= 0.0) MoveHandle(p, train, -force_n - dynamic_n, goal, view, hands);
+  if (state.lever > 0.0) return hands.commands;
+  const double lacking_n = -force_n - dynamic_n;
+  // What the speed will have become by then, with the dynamic brake alone, asks for more.
+  const double downhill_n = -train.mass_kg * (kGravity * view.mean_grade + state.resistance_mps2);
+  const double gain_mps =
+      std::max(0.0, downhill_n - dynamic_n - state.air_n) / train.moving_mass_kg * AnswerTime(train);
+  MoveHandle(p, train, lacking_n, gain_mps, goal, view, hands);
   return hands.commands;
 }
 
