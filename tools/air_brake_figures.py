@@ -73,7 +73,7 @@ def charging(table, out):
     goal = 0.95 * table["pipe_pressure_pa"][-1, 0]
     at_s = table.time_s[numpy.argmax(tail >= goal)]
     axes.axvline(at_s, color=style.MUTED, linestyle=(0, (1, 2)))
-    axes.annotate(f"tail at 95 %: {at_s:.0f} s", (at_s, 0.0), (-4, 6), textcoords="offset points", ha="right", color=style.MUTED)
+    axes.annotate(f"tail at 95 %: {at_s:.0f} s", (at_s, 250.0), (4, 0), textcoords="offset points", color=style.MUTED)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("pressure [kPa]")
     axes.margins(x=0)
@@ -98,7 +98,7 @@ def second_application(table, out):
                        color=style.MUTED)
     below.set_xlabel("time [s]")
     below.set_ylabel("pressure [kPa]")
-    below.legend(ncol=2, loc="lower right", fontsize=9)
+    below.legend(loc="upper right", fontsize=9)
     save(figure, out, "second_application")
 
 
@@ -125,18 +125,18 @@ def against_empirical(pairs, out):
                 left.plot(table.time_s, KPA * table["cylinder_pressure_pa"][:, vehicle - 1], color=colour, linestyle=line,
                           linewidth=1.5, label=f"vehicle {vehicle}" if line == "-" else None)
         left.set_xlim(0.0, end_s)
-        left.set_title(f"{title}: {' -, '.join(tables)} - -", loc="left", fontsize=11)
+        left.set_title(f"{title}: {' (lines), '.join(tables)} (dashed)", loc="left", fontsize=11)
         left.set_ylabel("cylinder [kPa]")
         for (kind, table), colour in zip(tables.items(), (style.INK, style.VERMILLION)):
             pressure = table["cylinder_pressure_pa"]
             begun = pressure > 2e3
             arrival = numpy.where(begun.any(axis=0), table.time_s[begun.argmax(axis=0)], numpy.nan)
             right.plot(arrival, numpy.arange(1, pressure.shape[1] + 1), color=colour, label=kind)
-        right.invert_yaxis()
+        right.set_ylim(pressure.shape[1] + 0.5, 0.5)
         right.set_xlim(left=0.0)
         right.set_ylabel("vehicle")
         right.set_title("first air in the cylinder (2 kPa)", loc="left", fontsize=11)
-        right.legend(loc="lower right", fontsize=9)
+        right.legend(loc="upper right", fontsize=9)
     panels[0][0].legend(ncol=2, loc="lower right", fontsize=9)
     for axes in panels[1]:
         axes.set_xlabel("time [s]")

@@ -52,7 +52,7 @@ class BrakeCommands(unittest.TestCase):
         self.assertIn(f"{len(lines)} of {len(lines)} passed", done.stdout)
 
     def test_a_brake_that_fails_is_told_with_1(self):
-        done = train_sim("air-test", SERVICE, *FEW, "--set", "brake.pipe.leakage_g_per_s_km=100")
+        done = train_sim("air-test", SERVICE, *FEW, "--set", "brake.pipe.leakage_g_per_s_km=300")
         self.assertEqual(1, done.returncode)
         self.assertRegex(done.stdout, r"leakage: tail's fall in a minute of lap.*FAILED")
         done = train_sim("air-test", SERVICE, "--trials", 1, "--set", "brake.valves[0].direct.quick_service_opening_mm=6", "--set",
