@@ -40,7 +40,7 @@ class ExternalVehicles(LaunchTest):
         node = subprocess.Popen([*command, "__ns:=/train", "__name:=mine"], env=self.master.environment,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(node.kill)
-        self.assertTrue(wait_until(lambda: {"/train/mine/configure", "/train/mine/step"} <= self.master.services(), 30))
+        self.assertTrue(wait_until(lambda: {"/train/mine/configure", "/train/mine/step"} <= self.master.services(), 90))
         return node
 
     def example(self, name="own_vehicle"):

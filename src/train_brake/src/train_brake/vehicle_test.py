@@ -403,7 +403,7 @@ def main(words):
     group = groups[0]
     scenario = train_sim("resolve", places[0], *level)
     of_group = f"train.consist[{group['group']}]"
-    own = train_sim("resolve", places[0], *level, "--set", f"{of_group}.external=")
+    own = train_sim("resolve", places[0], *level, "--set", f'{of_group}.external=""', "--set", f"{of_group}.model=ltd")
 
     import rospy
 
