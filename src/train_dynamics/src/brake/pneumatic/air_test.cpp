@@ -139,7 +139,9 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
   fall.Run(180.0);
   const double before = fall.brake.TailPressure();
   fall.Run(240.0);
-  const double lost = before - fall.brake.TailPressure();
+  // Four minutes have passed since the reduction: a pipe that is empty by then falls no more, but has.
+  const double tail_pa = fall.brake.TailPressure();
+  const double lost = std::max(before - tail_pa, (charged_pa - 100e3 - tail_pa) / 4.0);
   table.Add("leakage: tail's fall in a minute of lap", lost / 1e3, "kPa",
             "at most 34.5 kPa, 5 psi [M: 49 CFR 232.205]", lost <= 5.0 * kPsi);
 
