@@ -64,6 +64,14 @@ END
   dpkg-deb --root-owner-group --build "$work/$1" "$out/${1}_${version}_$architecture.deb" >/dev/null
   echo "$out/${1}_${version}_$architecture.deb"
 }
+mkdir -p "$main/DEBIAN"
+cat >"$main/DEBIAN/prerm" <<END
+#!/bin/sh
+# What Python compiled here since belongs to no package, and would keep the folders.
+set -e
+[ ! -d $prefix ] || find $prefix -name __pycache__ -type d -prune -exec rm -rf {} +
+END
+chmod 755 "$main/DEBIAN/prerm"
 control train-brake "$(libraries "$main$prefix"), $(grep -v '^#' "$here/depends.txt" | paste -sd, | sed 's/,/, /g')" \
   "braking of long freight trains, simulated as ROS nodes or in one process" \
   "The program train_sim, ROS nodes, scenarios and reports, under $prefix; source $prefix/setup.bash."
