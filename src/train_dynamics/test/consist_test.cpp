@@ -38,12 +38,22 @@ TEST(Consist, ThePapersTrain) {
   for (int i = 0; i < 242; ++i) EXPECT_EQ(consist.centre_m[i], -10.5 * i);
 }
 
+ConsistGroupParams Group(const VehicleParams& vehicle, int count, int vehicles_per_unit = 1,
+                         const ConnectionParams& unit_connection = {}) {
+  ConsistGroupParams group;
+  group.vehicle = vehicle;
+  group.count = count;
+  group.vehicles_per_unit = vehicles_per_unit;
+  group.unit_connection = unit_connection;
+  return group;
+}
+
 TEST(Consist, LengthsAndUnits) {
   TrainParams train;
   train.connection = Gears();
   VehicleParams locomotive = OreWagon();
   locomotive.length_m = 20.5;
-  train.consist = {{locomotive, 1, 1, {}, std::nullopt, true}, {OreWagon(), 6, 3, Bar()}};
+  train.consist = {Group(locomotive, 1), Group(OreWagon(), 6, 3, Bar())};
   const Consist consist(train);
   EXPECT_EQ(consist.centre_m, (std::vector<double>{0.0, -15.5, -26.0, -36.5, -47.0, -57.5, -68.0}));
   std::vector<bool> bars;
@@ -72,7 +82,7 @@ TEST(VehicleIndex, CountsFromBothEnds) {
 Consist Pairs(int pairs, const ConnectionParams& between = Gears(), const ConnectionParams& within = Bar()) {
   TrainParams train;
   train.connection = between;
-  train.consist = {{OreWagon(), 2 * pairs, 2, within}};
+  train.consist = {Group(OreWagon(), 2 * pairs, 2, within)};
   return Consist(train);
 }
 

@@ -129,8 +129,9 @@ TEST(Locomotives, TheLedgerClosesWithEveryTermOfEq1InBothModels) {
     EXPECT_NE(outcome.ledger.gravity_work_j, 0.0) << model;
     for (const auto& [element, energy] : outcome.ledger.dissipated_j) {
       if (element == "brake_shoes" || element == "dynamic_brake" || element == "rolling_resistance" ||
-          element == "curving_resistance" || element == "air_drag" || element == "draft_gears")
+          element == "curving_resistance" || element == "air_drag" || element == "draft_gears") {
         EXPECT_GT(energy, 1e4) << model << ": " << element;
+      }
     }
   }
 }

@@ -25,7 +25,9 @@ struct Pulled {
     params.strength_n = kStrength;
     TrainParams train;
     train.connection = std::move(params);
-    train.consist = {{OreWagon(), 2, 1, {}}};
+    train.consist.emplace_back();
+    train.consist.back().vehicle = OreWagon();
+    train.consist.back().count = 2;
     return Consist(train);
   }
   /// One interval at a rate of the extension; the force held over it.
