@@ -21,7 +21,8 @@ TEST_F(CsvTest, ReadsColumns) {
 TEST_F(CsvTest, ErrorsNameTheirLines) {
   EXPECT_EQ(ErrorsOfTable("time_s,pressure_kpa\n0\n1,2,3\nx,\n2,nan\n3,4 kPa\n4,5,6,\n"),
             "t.csv:2: has 1 values, but the header names 2 columns\n"
-            "t.csv:3: has 3 values, but the header names 2 columns\n"
+            "t.csv:3: has 3 values, but the header names 2 columns; decimals take a point, or a table "
+            "another separator (';')\n"
             "t.csv:4: time_s must be a number, got 'x'\n"
             "t.csv:4: pressure_kpa must be a number, got nothing\n"
             "t.csv:5: pressure_kpa must be a finite number, got 'nan'\n"

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,16 @@ bool IsOfARun(const fs::path& recording) {
   return fs::is_directory(recording) || recording.filename() == "train.bag";
 }
 
+/// A scenario without its comments and without the place of its pressure table, which a run copies beside its config.yaml.
+std::string WithoutPlaces(const std::string& scenario) {
+  std::istringstream lines(scenario);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind('#', 0) != 0 && line.rfind("pressure_table:", 0) != 0) kept += line + '\n';
+  }
+  return kept;
+}
+
 /// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
 LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   using train_dynamics::config::LoadScenario;
@@ -69,7 +80,8 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   // branch begins with what the other run had.)
   const bool is_beside = IsOfARun(options.recording) && fs::exists(beside);
   const bool is_branch = fs::exists(FolderOf(options.recording) / train_results::kBranchFile);
-  if (within && is_beside && !is_branch && *within != train_results::ReadPlainFile(beside, kLargestConfig)) {
+  if (within && is_beside && !is_branch &&
+      WithoutPlaces(*within) != WithoutPlaces(train_results::ReadPlainFile(beside, kLargestConfig))) {
     train_console::Tell("warning: {} is not the scenario that the bag holds, which is repeated\n",
                         beside.string());
     return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
