@@ -63,6 +63,11 @@ def broad(picture, *colours, top=0):
     return Seen(picture, *colours, top=rows[0], bottom=rows[-1] + 1) if rows else Seen(picture, *colours, bottom=1)
 
 
+def header_of(picture):
+    """The numbers over the plots."""
+    return Seen(picture, INK, top=picture.height // 30, bottom=max(broad(picture, COMPRESSION).top - picture.height // 10, 2))
+
+
 class Rviz(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -107,7 +112,9 @@ class Rviz(unittest.TestCase):
         self.call("/train/view/select", SelectView, "pressure", 100)
         self.call("/train/master/set_real_time_factor", SetRealTimeFactor, 1.0)
         self.call("/train/master/resume", Trigger)
-        picture = self.look_until(lambda p: broad(p, *BAND, top=broad(p, PRESSURE).bottom).width > 0.7 * p.width)
+        picture = self.look_until(  # text comes a moment after what it is on
+            lambda p: broad(p, *BAND, top=broad(p, PRESSURE).bottom).width > 0.7 * p.width and header_of(p).width > 0.6 * p.width
+        )
         self.keep(picture)
         width, height = picture.size
 
@@ -136,7 +143,7 @@ class Rviz(unittest.TestCase):
         self.assertIsNone(middle.getbbox())
 
         # Text: numbers over the plots from end to end, on their axes, and a clock that goes on.
-        header = Seen(picture, INK, top=height // 30, bottom=forces.top - height // 10)
+        header = header_of(picture)
         self.assertGreater(header.width, 0.6 * width)
         self.assertGreater(header.count, 300)
         axes = mask(picture, INK, tolerance=60).crop((0, forces.top, pressures.left - 10, pressures.bottom))
