@@ -151,13 +151,24 @@ check-deps: ## check who includes whom
 reference: build ## renew what is made from the code: docs/configuration.md, config/schema/, docs/ros_interface.md
 	@$(in_workspace) && tools/reference.sh
 
+# Python files; those of programs have no ending.
+python_sources = git ls-files '*.py' 'src/train_brake/scripts/*' 'src/train_brake_examples/scripts/*'
 .PHONY: format
-format: ## format the C++ code in place (clang-format 14)
+format: ## format the code in place (clang-format 14, black)
 	@$(sources) | xargs clang-format -i
+	@$(python_sources) | xargs black --quiet
 
-.PHONY: check-format
-check-format: ## complain about C++ code that is not formatted
+.PHONY: check-style
+check-style: ## complain about what is not formatted, misspelt, or doubtful in shell scripts and packages
+	@tools/install_packages.sh packages_style.txt
 	@$(sources) | xargs clang-format --dry-run --Werror
+	@$(python_sources) | xargs black --quiet --check || { echo "make format mends these:"; $(python_sources) | xargs black --check; }
+	@git ls-files | grep -v '\.csv$$' | xargs codespell -I tools/spelling_ignored.txt
+	@git ls-files '*.sh' .ci/run | xargs shellcheck -S warning
+	@catkin_lint --offline -W1 --quiet src
+
+.PHONY: nightly
+nightly: test test-sanitize test-tsan tidy fuzz test-docs-long test-soak ## everything that takes longer than `make test` should
 
 .PHONY: doc
 doc: ## reference of the C++ headers in build/doc/html (Doxygen); any warning is an error
