@@ -76,8 +76,9 @@ class BenchTools(unittest.TestCase):
         if "issue_share" not in facts:
             self.skipTest("no AVX2 here")
         self.assertTrue(0 < facts["issue_share"] < 2, facts)
-        self.assertEqual(["instructions", "loads and stores", "measured, wagons alone"],
-                         [row[0] for row in tables[1].rows])
+        self.assertEqual(
+            ["instructions", "loads and stores", "measured, wagons alone"], [row[0] for row in tables[1].rows]
+        )
 
     @unittest.skipUnless(BUILT, "the benchmarks are not built")
     def test_memory_is_that_of_the_program_alone(self):
@@ -106,8 +107,9 @@ class BenchTools(unittest.TestCase):
             programs.mkdir()
             (programs / "mpi_train").touch()
             said = io.StringIO()
-            with mock.patch.dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}"), \
-                    mock.patch.object(workspace, "PROGRAMS", pathlib.Path(folder)), contextlib.redirect_stderr(said):
+            with mock.patch.dict(os.environ, PATH=f"{folder}:{os.environ['PATH']}"), mock.patch.object(
+                workspace, "PROGRAMS", pathlib.Path(folder)
+            ), contextlib.redirect_stderr(said):
                 self.assertIsNone(workspace.mpi_train(2, []))
                 self.assertIsNone(workspace.mpi_train(8, []))
         self.assertEqual(1, said.getvalue().count("no such option: --oversubscribe"))
@@ -115,6 +117,7 @@ class BenchTools(unittest.TestCase):
     def test_exchange_is_measured_in_pairs(self):
         class Launch:
             """Takes as long per exchange as it has ranks, in ms."""
+
             start_s, stop_s = 1.0, 2.0
 
             def __init__(self, ranks, *_, settings):
@@ -122,12 +125,15 @@ class BenchTools(unittest.TestCase):
 
             def per_exchange_s(self):
                 return 1e-3 * self.ranks
+
         walls = iter(range(1, 100))
 
         def mpi(ranks, _):
             return {"wall_s": 1e-3 * ranks * next(walls), "exchanges": 1, "state_digest": f"{ranks}"}
-        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=mpi), \
-                mock.patch.object(exchange, "EXCHANGES", {2: 10, 242: 10}):
+
+        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=mpi), mock.patch.object(
+            exchange, "EXCHANGES", {2: 10, 242: 10}
+        ):
             tables, facts = exchange.run()
         rows = {row[0]: row[1:] for row in tables[0].rows}
         self.assertEqual(("0.75 x", "0.25 x"), rows["shared memory to MPI"])
@@ -142,12 +148,17 @@ class BenchTools(unittest.TestCase):
     def test_a_section_that_fails_leaves_the_others(self):
         main = bench_main()
         sections = {"runs": lambda: 1 / 0, "graph": lambda: ([Table("graph", ["s"], [("one", "1")])], {"x": 1})}
-        with tempfile.TemporaryDirectory() as folder, \
-                mock.patch.object(main, "RESULTS", pathlib.Path(folder) / "bench"), \
-                mock.patch.object(main.page, "PAGE", pathlib.Path(folder) / "page.md"), \
-                mock.patch.object(main.importlib, "import_module", lambda name: mock.Mock(run=sections[name])), \
-                mock.patch.object(sys, "argv", ["bench", "--only", "runs,graph"]), \
-                contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(
+            main, "RESULTS", pathlib.Path(folder) / "bench"
+        ), mock.patch.object(main.page, "PAGE", pathlib.Path(folder) / "page.md"), mock.patch.object(
+            main.importlib, "import_module", lambda name: mock.Mock(run=sections[name])
+        ), mock.patch.object(
+            sys, "argv", ["bench", "--only", "runs,graph"]
+        ), contextlib.redirect_stdout(
+            io.StringIO()
+        ), contextlib.redirect_stderr(
+            io.StringIO()
+        ):
             with self.assertRaisesRegex(SystemExit, "(?s)make bench: runs: .*ZeroDivisionError"):
                 main.main()
             text = main.page.PAGE.read_text()
@@ -163,8 +174,10 @@ class BenchTools(unittest.TestCase):
     def test_sections_of_different_commits_are_told_apart(self):
         main = bench_main()
         with contextlib.redirect_stderr(io.StringIO()):
-            self.assertEqual("a (runs, limit); b (graph)", main._commits(
-                {"runs": {"commit": "a"}, "graph": {"commit": "b"}, "limit": {"commit": "a"}}))
+            self.assertEqual(
+                "a (runs, limit); b (graph)",
+                main._commits({"runs": {"commit": "a"}, "graph": {"commit": "b"}, "limit": {"commit": "a"}}),
+            )
         self.assertEqual("a", main._commits({"runs": {"commit": "a"}}))
 
     def test_unknown_section(self):
@@ -180,14 +193,19 @@ class BenchTools(unittest.TestCase):
 
     def test_targets(self):
         rows = dict((row[0], row[1:]) for row in targets.table({"runs": {"2d_1_ns": 110, "ltd_1_wall_s": 0.3}}).rows)
-        self.assertEqual(("110", "220 ns per vehicle-step", "met, 50 % below"),
-                         rows["2D train, one thread, everything included"])
+        self.assertEqual(
+            ("110", "220 ns per vehicle-step", "met, 50 % below"), rows["2D train, one thread, everything included"]
+        )
         self.assertEqual("MISSED by 150 %", rows["emergency stop with its bag, LTD, one thread"][2])
         self.assertEqual("not measured", rows["ROS, 242 ranks: an exchange against MPI"][0])
 
     def test_tables_are_aligned(self):
-        text = as_text([Table("short", ["a"], [("one", "1"), ("a much longer label", "100")]),
-                        Table("other", ["b", "c"], [("x", "2", "3")])])
+        text = as_text(
+            [
+                Table("short", ["a"], [("one", "1"), ("a much longer label", "100")]),
+                Table("other", ["b", "c"], [("x", "2", "3")]),
+            ]
+        )
         for block in text.strip("\n").split("\n\n"):
             self.assertEqual(1, len({len(line) for line in block.splitlines()}), block)
 
@@ -206,16 +224,32 @@ class BenchTools(unittest.TestCase):
 
     def test_the_page_says_why_a_target_is_missed(self):
         cores = machine.cores()
-        text = self.page({}, {
-            "runs": {"ltd_1_wall_s": 0.2, "ltd_1_recording": 0.104, f"2d_{cores}_recording": 0.07,
-                     f"2d_{cores}_recording_cpu": 0.051},
-            "vehicles": {"bag_us": 5.88, "ltd_share_of_couplers": 0.45, "ltd_share_of_vehicles": 0.25},
-            "scaling": {"ltd_spread": 0.3, "ltd_fixed_us": 0.15, "lanes": 8, "lanes_of_the_last_pack": 2},
-            "graph": {"overhead_ms": 1.0, "every_vehicle_ms": 3.0}, "exchange": {"242_ms": 2.0}})
+        text = self.page(
+            {},
+            {
+                "runs": {
+                    "ltd_1_wall_s": 0.2,
+                    "ltd_1_recording": 0.104,
+                    f"2d_{cores}_recording": 0.07,
+                    f"2d_{cores}_recording_cpu": 0.051,
+                },
+                "vehicles": {"bag_us": 5.88, "ltd_share_of_couplers": 0.45, "ltd_share_of_vehicles": 0.25},
+                "scaling": {"ltd_spread": 0.3, "ltd_fixed_us": 0.15, "lanes": 8, "lanes_of_the_last_pack": 2},
+                "graph": {"overhead_ms": 1.0, "every_vehicle_ms": 3.0},
+                "exchange": {"242_ms": 2.0},
+            },
+        )
         text = " ".join(text.split())
-        for words in ("## What is missed, and why", "couplers take 45 % of an exchange", "works 5.88 us for a record",
-                      "adds 5 % to the CPU time", "costs about 0.15 us", "fill 2 of the 8 lanes",
-                      "overhead of an exchange**: it was met on", "five of 2 ms: 30 % of the time"):
+        for words in (
+            "## What is missed, and why",
+            "couplers take 45 % of an exchange",
+            "works 5.88 us for a record",
+            "adds 5 % to the CPU time",
+            "costs about 0.15 us",
+            "fill 2 of the 8 lanes",
+            "overhead of an exchange**: it was met on",
+            "five of 2 ms: 30 % of the time",
+        ):
             self.assertIn(words, text)
         self.assertNotIn("2000 vehicles, 2D**", text)
         self.assertNotIn("{", text.replace("`{", ""))

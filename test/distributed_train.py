@@ -38,9 +38,19 @@ class Launch:
         self.log = pathlib.Path(folder) / "launch.log"
         self.log_file = open(self.log, "w")
         self.process = subprocess.Popen(
-            ["roslaunch", "train_brake", "train.launch", f"scenario:={scenario}", f"vehicles:={vehicles}",
-             f"out:={self.out}", f"exit_status_file:={self.status_file}", *arguments],
-            stdout=self.log_file, stderr=subprocess.STDOUT)
+            [
+                "roslaunch",
+                "train_brake",
+                "train.launch",
+                f"scenario:={scenario}",
+                f"vehicles:={vehicles}",
+                f"out:={self.out}",
+                f"exit_status_file:={self.status_file}",
+                *arguments,
+            ],
+            stdout=self.log_file,
+            stderr=subprocess.STDOUT,
+        )
 
     def wait(self, timeout_s=180):
         """The master's exit code."""
@@ -61,14 +71,23 @@ class Launch:
 
 
 def train_sim(*arguments, scenario=SHORT_TRAIN):
-    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(scenario), *arguments], check=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    done = subprocess.run(
+        ["rosrun", "train_sim", "train_sim", "run", str(scenario), *arguments],
+        check=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     return json.loads(done.stdout)
 
 
 def verify(recording):
-    done = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(recording)], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(
+        ["rosrun", "train_sim", "train_sim", "verify", str(recording)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     return done.returncode, done.stdout + done.stderr
 
 
@@ -122,8 +141,13 @@ class DistributedTrain(unittest.TestCase):
 
     def test_same_as_in_one_process_for_every_number_of_nodes(self):
         expected = train_sim()
-        for arguments in (["nodes:=1"], ["nodes:=3"], ["nodes:=6"], ["nodes:=2", "threads:=2"],
-                          ["nodes:=3", "shared_memory:=false"]):
+        for arguments in (
+            ["nodes:=1"],
+            ["nodes:=3"],
+            ["nodes:=6"],
+            ["nodes:=2", "threads:=2"],
+            ["nodes:=3", "shared_memory:=false"],
+        ):
             with self.subTest(arguments):
                 self.assert_complete(self.launch(*arguments), expected)
 
@@ -185,7 +209,9 @@ class DistributedTrain(unittest.TestCase):
         """242 nodes come up and run 200 exchanges."""
         emergency = CONFIG / "scenarios" / "emergency.yaml"
         expected = train_sim("--set", "duration_s=0.2", scenario=emergency)
-        launch = self.launch("nodes:=242", "set:=duration_s=0.2", "startup_timeout:=120", scenario=emergency, vehicles=242)
+        launch = self.launch(
+            "nodes:=242", "set:=duration_s=0.2", "startup_timeout:=120", scenario=emergency, vehicles=242
+        )
         self.assert_complete(launch, expected, timeout_s=300)
         self.assertEqual(242, len(set(re.findall(r"process\[train/(wagon_\d+)-", launch.log.read_text()))))
 
@@ -221,8 +247,19 @@ class DistributedTrain(unittest.TestCase):
         self.assertTrue(wait_until(lambda: diagnostics, 5))
         values = {v.key: v.value for v in diagnostics[-1].status[0].values}
         self.assertEqual("paused", diagnostics[-1].status[0].message)
-        self.assertEqual({"simulated_s", "real_time_factor", "exchange_p50_ms", "exchange_p99_ms", "ranks", "slowest_rank",
-                          "deadline_warnings", "recoveries"}, set(values))
+        self.assertEqual(
+            {
+                "simulated_s",
+                "real_time_factor",
+                "exchange_p50_ms",
+                "exchange_p99_ms",
+                "ranks",
+                "slowest_rank",
+                "deadline_warnings",
+                "recoveries",
+            },
+            set(values),
+        )
         self.assertTrue(resume().success)
         self.assertFalse(resume().success)
         self.assertFalse(step(1).success)
@@ -289,10 +326,15 @@ class DistributedTrain(unittest.TestCase):
         self.assertTrue(rospy.ServiceProxy("/train/master/step", StepExchanges)(1).success)
         graph = rosgraph.Master("/distributed_train")
         topics = {name: kind for name, kind in graph.getTopicTypes()}
-        for topic, kind in (("/train/state", "TrainState"), ("/train/in_train_forces", "InTrainForces"),
-                            ("/train/brake_pressures", "BrakePressures"), ("/train/energy_ledger", "EnergyLedger"),
-                            ("/train/wagon_004/state", "WagonState"), ("/train/live/status", "RunStatus"),
-                            ("/train/live/wagon_004/state", "WagonState")):
+        for topic, kind in (
+            ("/train/state", "TrainState"),
+            ("/train/in_train_forces", "InTrainForces"),
+            ("/train/brake_pressures", "BrakePressures"),
+            ("/train/energy_ledger", "EnergyLedger"),
+            ("/train/wagon_004/state", "WagonState"),
+            ("/train/live/status", "RunStatus"),
+            ("/train/live/wagon_004/state", "WagonState"),
+        ):
             self.assertEqual("train_brake_msgs/" + kind, topics.get(topic), topic)
         self.assertEqual("std_msgs/String", topics.get("/train/scenario"))
         _, _, services = graph.getSystemState()
@@ -303,14 +345,20 @@ class DistributedTrain(unittest.TestCase):
     def test_rosbag_record_works_beside(self):
         bag = pathlib.Path(self.folder.name) / "beside.bag"
         topics = ["/train/" + t for t in ("state", "scenario", "in_train_forces", "energy_ledger", "wagon_004/state")]
-        recorder = subprocess.Popen(["rosbag", "record", "-q", "-O", str(bag), *topics, "__name:=beside"],
-                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        recorder = subprocess.Popen(
+            ["rosbag", "record", "-q", "-O", str(bag), *topics, "__name:=beside"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         # Three seconds: a recorder starts with the first message after the first /clock, and takes a moment.
         launch = self.launch("nodes:=2", "start_paused:=true", "real_time_factor:=1", "set:=duration_s=3")
         rospy.wait_for_service("/train/master/resume", 60)
         graph = rosgraph.Master("/distributed_train")
-        self.assertTrue(wait_until(
-            lambda: any(t == "/train/state" and "/beside" in nodes for t, nodes in graph.getSystemState()[1]), 30))
+        self.assertTrue(
+            wait_until(
+                lambda: any(t == "/train/state" and "/beside" in nodes for t, nodes in graph.getSystemState()[1]), 30
+            )
+        )
         time.sleep(1.0)  # for the connection itself
         self.assertTrue(rospy.ServiceProxy("/train/master/resume", Trigger)().success)
         self.assertEqual(0, launch.wait(), launch.log.read_text())
@@ -327,7 +375,8 @@ class DistributedTrain(unittest.TestCase):
     def test_a_missing_rank_is_named(self):
         """The launch file deals the train to two nodes, the master expects three."""
         launch_file = pathlib.Path(self.folder.name) / "missing.launch"
-        launch_file.write_text(f"""
+        launch_file.write_text(
+            f"""
           <launch><group ns="train">
             <node pkg="wagon_node" type="wagon_node" name="wagon_001"/>
             <node pkg="wagon_node" type="wagon_node" name="wagon_005"/>
@@ -335,25 +384,41 @@ class DistributedTrain(unittest.TestCase):
               <param name="scenario" value="{SHORT_TRAIN}"/> <param name="ranks" value="3"/>
               <param name="startup_timeout_s" value="3"/>
               <param name="exit_status_file" value="{self.folder.name}/status"/>
-            </node></group></launch>""")
-        done = subprocess.run(["roslaunch", str(launch_file)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              timeout=60)
+            </node></group></launch>"""
+        )
+        done = subprocess.run(
+            ["roslaunch", str(launch_file)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60
+        )
         self.assertEqual("4", (pathlib.Path(self.folder.name) / "status").read_text().strip(), done.stdout)
         self.assertIn("/train/wagon_003", done.stdout)
         self.assertNotIn("/train/wagon_005 (", done.stdout)
 
     def test_wagons_leave_when_the_master_is_killed(self):
         launch_file = pathlib.Path(self.folder.name) / "orphans.launch"
-        launch_file.write_text("""
+        launch_file.write_text(
+            """
           <launch><group ns="train">
             <node pkg="wagon_node" type="wagon_node" name="wagon_001"/>
-            <node pkg="wagon_node" type="wagon_node" name="wagon_004"/></group></launch>""")
+            <node pkg="wagon_node" type="wagon_node" name="wagon_004"/></group></launch>"""
+        )
         wagons = subprocess.Popen(["roslaunch", str(launch_file)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(wagons.wait, 30)
         self.addCleanup(wagons.send_signal, signal.SIGINT)
-        master = subprocess.Popen(["rosrun", "ltd_master", "ltd_master", "__ns:=train", "__name:=master",
-                                   f"_scenario:={SHORT_TRAIN}", "_ranks:=2", "_real_time_factor:=0.01"],
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        master = subprocess.Popen(
+            [
+                "rosrun",
+                "ltd_master",
+                "ltd_master",
+                "__ns:=train",
+                "__name:=master",
+                f"_scenario:={SHORT_TRAIN}",
+                "_ranks:=2",
+                "_real_time_factor:=0.01",
+            ],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
         self.assertTrue(wait_until(lambda: len(wagon_nodes()) == 2, 30))
         rospy.wait_for_message("/train/state", TrainState, 60)  # under way
         self.assertTrue(share_memory(wagon_nodes()))  # which has no name: it goes with the last of them
@@ -372,9 +437,12 @@ class DistributedTrain(unittest.TestCase):
             self.assertGreater(bag.get_message_count("/train/state"), 1)
 
     def test_bad_input_ends_with_2(self):
-        for arguments, complaint in ((["set:=dt_s=abc"], "dt_s must be"), (["vehicles:=7"], "vehicles:=6"),
-                                     (["checkpoint_interval:=nan"], "checkpoint_interval_s must be"),
-                                     (["on_lost_node:=foo"], "on_lost_node must be")):
+        for arguments, complaint in (
+            (["set:=dt_s=abc"], "dt_s must be"),
+            (["vehicles:=7"], "vehicles:=6"),
+            (["checkpoint_interval:=nan"], "checkpoint_interval_s must be"),
+            (["on_lost_node:=foo"], "on_lost_node must be"),
+        ):
             with self.subTest(arguments):
                 launch = self.launch(*arguments, "nodes:=2")
                 self.assertEqual(2, launch.wait(60))

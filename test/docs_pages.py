@@ -44,7 +44,10 @@ PROGRAMS = (
     "apt-get export make parallel ros2 rosbag rosbash roscore roslaunch rosmsg rosnode rosrun rosservice rosparam rostopic "
     "rsync source ssh sudo train_sim dpkg"
 ).split()
-LONG, GUIDE = "--long" in sys.argv, "--guide" in sys.argv  # GUIDE: the commands of docs/guide; else those of all other pages
+LONG, GUIDE = (
+    "--long" in sys.argv,
+    "--guide" in sys.argv,
+)  # GUIDE: the commands of docs/guide; else those of all other pages
 sys.argv = [word for word in sys.argv if word not in ("--long", "--short", "--guide")]
 COMMENT = re.compile(r"<!-- (commands|run): (.*?) -->\s*$")
 FENCE = re.compile(r"( *)```+ *(.*?)\s*$")
@@ -57,7 +60,9 @@ class Block:
         self.without = dict(mark[len("without ") :].rsplit(": ", 1) for mark in marks if mark.startswith("without "))
 
     def is_run(self):
-        return self.language in ("bash", "python") and "elsewhere" not in self.marks and (LONG or "long" not in self.marks)
+        return (
+            self.language in ("bash", "python") and "elsewhere" not in self.marks and (LONG or "long" not in self.marks)
+        )
 
     def code(self):
         """What bash is given."""
@@ -145,9 +150,24 @@ class Links(unittest.TestCase):
 
 class Spelling(unittest.TestCase):
     def test_pages_configuration_and_messages(self):
-        checked = [*PAGES, ROOT / "config", ROOT / "launch", ROOT / "src", ROOT / "test", ROOT / "tools", ROOT / "Makefile"]
+        checked = [
+            *PAGES,
+            ROOT / "config",
+            ROOT / "launch",
+            ROOT / "src",
+            ROOT / "test",
+            ROOT / "tools",
+            ROOT / "Makefile",
+        ]
         done = subprocess.run(
-            ["codespell", "--ignore-words", str(ROOT / "tools" / "spelling_ignored.txt"), "--skip", "*.pyc,corpus,CMakeLists.txt", *map(str, checked)],
+            [
+                "codespell",
+                "--ignore-words",
+                str(ROOT / "tools" / "spelling_ignored.txt"),
+                "--skip",
+                "*.pyc,corpus,CMakeLists.txt",
+                *map(str, checked),
+            ],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -254,7 +274,12 @@ class Commands(unittest.TestCase):
             text = re.sub(r"\n(?=at=)", "\n[ ! -e devel/setup.bash ] || . devel/setup.bash\n", text, 1)
         with open(folder / "output.log", "w") as log:  # no pipe, which a process left behind would hold open
             process = subprocess.Popen(
-                ["bash", "-c", text], cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                ["bash", "-c", text],
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
                 start_new_session=True,
             )
             try:

@@ -33,8 +33,14 @@ class ExampleLaunches(LaunchTest):
                 settings = [f"duration_s={duration_s:g}"]
                 model = ["--model", row["model"]] if row["model"] else []
                 scenario = HERE.parent / "config" / "scenarios" / (row["scenario"] + ".yaml")
-                launch = Launch(self.master, self.folder, ("train_brake", row["scenario"] + ".launch"), "nodes:=2",
-                                "set:=" + " ".join(settings), *(["model:=" + row["model"]] if row["model"] else []))
+                launch = Launch(
+                    self.master,
+                    self.folder,
+                    ("train_brake", row["scenario"] + ".launch"),
+                    "nodes:=2",
+                    "set:=" + " ".join(settings),
+                    *(["model:=" + row["model"]] if row["model"] else []),
+                )
                 self.assertEqual(0, launch.ended(600), launch.log())
                 expected = train_sim(*model, *[word for s in settings for word in ("--set", s)], scenario=scenario)
                 self.assertEqual(expected["state_digest"], launch.summary()["state_digest"])

@@ -38,8 +38,12 @@ class ExternalVehicles(LaunchTest):
         self.scenario.write_text(SCENARIO)
 
     def node(self, *command):
-        node = subprocess.Popen([*command, "__ns:=/train", "__name:=mine"], env=self.master.environment,
-                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        node = subprocess.Popen(
+            [*command, "__ns:=/train", "__name:=mine"],
+            env=self.master.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         self.addCleanup(node.kill)
         self.assertTrue(wait_until(lambda: {"/train/mine/configure", "/train/mine/step"} <= self.master.services(), 90))
         return node
@@ -53,8 +57,16 @@ class ExternalVehicles(LaunchTest):
         self.assertTrue(wait_until(lambda: "/train/mine/step" not in self.master.services(), 10))
 
     def command(self, *words, timeout_s=120):
-        done = subprocess.run(words, env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              cwd=self.folder, timeout=timeout_s, check=False)
+        done = subprocess.run(
+            words,
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            cwd=self.folder,
+            timeout=timeout_s,
+            check=False,
+        )
         return done.returncode, done.stdout
 
     def run_train(self, out, *arguments, code=0):
@@ -86,7 +98,9 @@ class ExternalVehicles(LaunchTest):
         with rosbag.Bag(str(self.folder / "alone" / "train.bag")) as bag:
             for topic, message, _ in bag.read_messages():
                 {"/train/state": states, "/train/energy_ledger": ledgers}.get(topic, []).append(message)
-        self.assertTrue(all(f != f for state in states for f in state.shoe_force_n[2:]), "what a node leaves out is NaN")
+        self.assertTrue(
+            all(f != f for state in states for f in state.shoe_force_n[2:]), "what a node leaves out is NaN"
+        )
         # What goes into the external vehicles through couplers closes the ledger of the rest.
         self.assertGreater(len(ledgers), 10)
         last = ledgers[-1]
@@ -111,8 +125,10 @@ class ExternalVehicles(LaunchTest):
         self.assertRegex(log, "external +vehicles 3-4, moved by the node mine")
 
     def test_a_scenario_says_who_moves_them(self):
-        for word, told in (("train.consist[1].model=ltd", "model must not be given for external vehicles"),
-                           ("train.consist[0].external=mine", "must differ from that of consist[0]")):
+        for word, told in (
+            ("train.consist[1].model=ltd", "model must not be given for external vehicles"),
+            ("train.consist[0].external=mine", "must differ from that of consist[0]"),
+        ):
             code, log = self.command("rosrun", "train_sim", "train_sim", "check", str(self.scenario), "--set", word)
             self.assertEqual(2, code, log)
             self.assertIn(told, log)
@@ -120,9 +136,23 @@ class ExternalVehicles(LaunchTest):
     def test_what_is_lost_is_brought_back_if_it_gives_snapshots(self):
         node = self.example("own_vehicle_cpp")
         self.run_train("whole", "set:=duration_s=6")
-        train = subprocess.Popen(["rosrun", "train_brake", "run", str(self.scenario), "broken", "report:=false",
-                                  "set:=duration_s=6", "real_time_factor:=0.5"], env=self.master.environment, cwd=self.folder,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        train = subprocess.Popen(
+            [
+                "rosrun",
+                "train_brake",
+                "run",
+                str(self.scenario),
+                "broken",
+                "report:=false",
+                "set:=duration_s=6",
+                "real_time_factor:=0.5",
+            ],
+            env=self.master.environment,
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.assertTrue(wait_until(lambda: (self.folder / "broken").exists(), 30))
         self.tool("rostopic", "echo", "-n20", "/train/live/status")
         subprocess.run(["kill", "-9", str(self.master.process_of("mine"))], check=True)
@@ -137,15 +167,22 @@ class ExternalVehicles(LaunchTest):
         self.example("own_vehicle_cpp")
         self.run_train("whole", "set:=duration_s=3")
         self.run_train("part", "checkpoint_interval:=1")
-        code, log = self.command("rosrun", "train_brake", "run", "rest", "resume:=part", "set:=duration_s=3", "report:=false")
+        code, log = self.command(
+            "rosrun", "train_brake", "run", "rest", "resume:=part", "set:=duration_s=3", "report:=false"
+        )
         self.assertEqual(0, code, log)
         self.assertEqual(self.summary("whole")["state_digest"], self.summary("rest")["state_digest"])
 
     def test_who_is_lost_without_snapshots_ends_the_run_by_name(self):
         self.example()
-        train = subprocess.Popen(["rosrun", "train_brake", "run", str(self.scenario), "lost", "report:=false",
-                                  "real_time_factor:=0.2"], env=self.master.environment, cwd=self.folder,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        train = subprocess.Popen(
+            ["rosrun", "train_brake", "run", str(self.scenario), "lost", "report:=false", "real_time_factor:=0.2"],
+            env=self.master.environment,
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.tool("rostopic", "echo", "-n3", "/train/live/status")
         subprocess.run(["kill", "-9", str(self.master.process_of("mine"))], check=True)
         log = train.communicate(timeout=60)[0]
@@ -175,8 +212,15 @@ class ExternalVehicles(LaunchTest):
             self.end(node)
 
     def test_faults_are_caught_by_name(self):
-        for fault, names in (("active", {"passivity"}), ("velocity", {"velocity"}), ("nan", {"finite"}), ("slow", {"slow"}),
-                             ("light", {"mass"}), ("random", {"repeatability"}), ("deaf", {"refusal"})):
+        for fault, names in (
+            ("active", {"passivity"}),
+            ("velocity", {"velocity"}),
+            ("nan", {"finite"}),
+            ("slow", {"slow"}),
+            ("light", {"mass"}),
+            ("random", {"repeatability"}),
+            ("deaf", {"refusal"}),
+        ):
             node = self.node(str(HERE / "faulty_vehicle.py"), fault)
             code, log, failed = self.judge()
             self.assertEqual(1, code, f"{fault}: {log}")

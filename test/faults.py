@@ -26,7 +26,9 @@ import rosunit
 
 from launches import SHORT_TRAIN, Launch, LaunchTest, is_beginning, messages, train_sim, wait_until
 
-DURATION = 2.0  # [s] of the train, and of wall time: long enough to be met on its way, with a snapshot after the first half
+DURATION = (
+    2.0  # [s] of the train, and of wall time: long enough to be met on its way, with a snapshot after the first half
+)
 EXCHANGES = 1000
 PACED = "real_time_factor:=1"
 A_QUARTER, THREE_QUARTERS, THE_END = r" 0\.50 of 2 s", r" 1\.50 of 2 s", r" 2\.00 of 2 s"  # the master's progress
@@ -41,9 +43,11 @@ undisturbed_runs = {}
 
 def cell(fault, phase):
     """Gives a test its place in the table."""
+
     def mark(test):
         test.cell = (fault, phase)
         return test
+
     return mark
 
 
@@ -63,8 +67,16 @@ class Matrix(LaunchTest):
 
     def launch(self, *arguments, nodes=2):
         """train.launch, with respawn."""
-        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6",
-                      f"nodes:={nodes}", f"set:={self.settings}", *arguments)
+        return Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={SHORT_TRAIN}",
+            "vehicles:=6",
+            f"nodes:={nodes}",
+            f"set:={self.settings}",
+            *arguments,
+        )
 
     def launch_nodes(self, *nodes, behind="", **parameters):
         """A train of two ranks with those nodes (XML), which are not respawned. @param behind  redirections of its master
@@ -78,15 +90,24 @@ class Matrix(LaunchTest):
             script.write_text(f'#!/bin/bash\n{behind}\nexec "$@"\n')
             script.chmod(0o755)
             prefix = f' launch-prefix="{script}"'
-        file.write_text(f"""<launch><arg name="out"/><arg name="exit_status_file"/><group ns="train">{"".join(nodes)}
+        file.write_text(
+            f"""<launch><arg name="out"/><arg name="exit_status_file"/><group ns="train">{"".join(nodes)}
           <node pkg="ltd_master" type="ltd_master" name="master" required="true" output="screen"{prefix}>
             <param name="out" value="$(arg out)"/><param name="exit_status_file" value="$(arg exit_status_file)"/>{text}
-          </node></group></launch>""")
+          </node></group></launch>"""
+        )
         return Launch(self.master, self.folder, (str(file),))
 
     def resume(self):
         """train.launch goes on with what an earlier launch has left."""
-        return Launch(self.master, self.folder, ("train_brake", "train.launch"), f"resume:={self.folder}/out", "vehicles:=6", "nodes:=3")
+        return Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"resume:={self.folder}/out",
+            "vehicles:=6",
+            "nodes:=3",
+        )
 
     @staticmethod
     def wagon(name):
@@ -99,15 +120,25 @@ class Matrix(LaunchTest):
 
     def start(self, package, program, *arguments, name="wagon_004"):
         """A node by hand."""
-        process = subprocess.Popen(["rosrun", package, program, *arguments, "__ns:=/train", f"__name:={name}"],
-                                   env=self.master.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            ["rosrun", package, program, *arguments, "__ns:=/train", f"__name:={name}"],
+            env=self.master.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         return process
 
     def call(self, service, *arguments):
-        done = subprocess.run(["rosservice", "call", "/train/master/" + service, *arguments], env=self.master.environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+        done = subprocess.run(
+            ["rosservice", "call", "/train/master/" + service, *arguments],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=60,
+        )
         self.assertIn("success: True", done.stdout)
 
     def signal(self, number, node="wagon_004"):
@@ -125,7 +156,9 @@ class Matrix(LaunchTest):
         table.append((*getattr(self, self._testMethodName).cell, seconds, outcome))
 
     def assert_nothing_left(self, launch):
-        self.assertTrue(wait_until(lambda: not self.master.processes(), SOON), f"{self.master.processes()}\n{launch.log()}")
+        self.assertTrue(
+            wait_until(lambda: not self.master.processes(), SOON), f"{self.master.processes()}\n{launch.log()}"
+        )
 
     def assert_same(self, launch, timeout_s=60):
         """The run has ended as if nothing had happened."""
@@ -157,7 +190,9 @@ class Matrix(LaunchTest):
         return messages(copy)
 
     def assert_beginning(self, bag):
-        self.assertTrue(is_beginning(bag, undisturbed(self.settings)[1]), "the bag is not the beginning of the undisturbed one")
+        self.assertTrue(
+            is_beginning(bag, undisturbed(self.settings)[1]), "the bag is not the beginning of the undisturbed one"
+        )
         return len(bag.get("/train/state", []))
 
     # Cells that differ in little.
@@ -177,8 +212,13 @@ class Matrix(LaunchTest):
     def is_waited_for(self, exchange, when):
         launch = self.launch_faulty("slow", exchange)
         replied = launch.saw(FAULT, SOON)
-        self.named(launch, f"{when}: waiting for 1 s already for 1 of 2 wagon nodes: {RANK}", replied, "waited for, same bits",
-                   expected_s=1)
+        self.named(
+            launch,
+            f"{when}: waiting for 1 s already for 1 of 2 wagon nodes: {RANK}",
+            replied,
+            "waited for, same bits",
+            expected_s=1,
+        )
         self.assert_same(launch)
 
 
@@ -199,8 +239,13 @@ class Short(Matrix):
         launch = self.launch(PACED)
         launch.saw(A_QUARTER, SOON)
         stopped = self.signal(signal.SIGSTOP)
-        self.named(launch, "waiting for 1 s already for 1 of 2 wagon nodes: " + RANK, stopped, "waited for, same bits",
-                   expected_s=1)
+        self.named(
+            launch,
+            "waiting for 1 s already for 1 of 2 wagon nodes: " + RANK,
+            stopped,
+            "waited for, same bits",
+            expected_s=1,
+        )
         self.signal(signal.SIGCONT)
         self.assert_same(launch)
         self.assertNotIn("is back", launch.log())
@@ -262,9 +307,24 @@ class SideChannels(Matrix):
         terminal, of_launch = os.openpty()
         log = self.folder / "status"
         launch = subprocess.Popen(
-            ["roslaunch", "train_brake", "train.launch", f"scenario:={SHORT_TRAIN}", "vehicles:=6", "nodes:=2", PACED,
-             f"set:={self.settings}", f"out:={self.folder}/out", f"exit_status_file:={log}"],
-            env=self.master.environment, stdin=of_launch, stdout=of_launch, stderr=of_launch, start_new_session=True)
+            [
+                "roslaunch",
+                "train_brake",
+                "train.launch",
+                f"scenario:={SHORT_TRAIN}",
+                "vehicles:=6",
+                "nodes:=2",
+                PACED,
+                f"set:={self.settings}",
+                f"out:={self.folder}/out",
+                f"exit_status_file:={log}",
+            ],
+            env=self.master.environment,
+            stdin=of_launch,
+            stdout=of_launch,
+            stderr=of_launch,
+            start_new_session=True,
+        )
         self.addCleanup(launch.kill)
         os.close(of_launch)
         text = b""
@@ -280,8 +340,9 @@ class SideChannels(Matrix):
     @cell("file-size limit (ulimit -f)", "mid-run")
     def test_file_size_limit(self):
         self.settings = LARGE_RECORDS
-        launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), behind="ulimit -f 2000",
-                                   checkpoint_interval_s=0.2)
+        launch = self.launch_nodes(
+            self.wagon("wagon_001"), self.wagon("wagon_004"), behind="ulimit -f 2000", checkpoint_interval_s=0.2
+        )
         since = time.monotonic()
         seconds = launch.saw(r"results could not be written: cannot write .*ulimit -f", 60)
         self.note("-", "stopped, exit code 1; the bag holds what fits")
@@ -314,7 +375,9 @@ class SideChannels(Matrix):
         started = time.monotonic()
         folder = self.folder / "second"
         folder.mkdir()
-        second = Launch(self.master, folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6", "nodes:=2")
+        second = Launch(
+            self.master, folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6", "nodes:=2"
+        )
         seconds = second.saw("/train/master runs already under the ROS master", SOON, started) - started
         self.assertEqual(2, second.ended(), second.log())
         self.assertFalse(second.out.exists())
@@ -329,14 +392,21 @@ class SideChannels(Matrix):
         self.call("pause")  # it is in progress for as long as the readers need
 
         def read(*command):
-            return subprocess.run(["rosrun", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+            return subprocess.run(
+                ["rosrun", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60
+            )
 
         page = self.folder / "page.html"
-        for done in (read("train_brake", "report", str(launch.out), "--out", str(page)),
-                     read("train_brake", "export", str(launch.out), str(self.folder / "tables"))):
+        for done in (
+            read("train_brake", "report", str(launch.out), "--out", str(page)),
+            read("train_brake", "export", str(launch.out), str(self.folder / "tables")),
+        ):
             self.assertTrue(done.returncode == 0 or "is writing it now" in done.stdout, done.stdout)
         self.assertIn(read("train_sim", "train_sim", "verify", str(launch.out)).returncode, (6, 7))
-        self.assertIn("another run is writing into", read("train_sim", "train_sim", "run", str(SHORT_TRAIN), "--out", str(launch.out)).stdout)
+        self.assertIn(
+            "another run is writing into",
+            read("train_sim", "train_sim", "run", str(SHORT_TRAIN), "--out", str(launch.out)).stdout,
+        )
         self.call("resume")
         self.assert_same(launch)
         self.note("-", "read as far as it goes, or refused; the run: same bits")
@@ -353,7 +423,9 @@ class SideChannels(Matrix):
         self.note("-", "registers again, same bits")
 
 
-LARGE_RECORDS = f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # several chunks of a bag
+LARGE_RECORDS = (
+    f"duration_s={DURATION:g} record_interval_s=0.002 detail_vehicles=[1,2,3,4,5,6]"  # several chunks of a bag
+)
 
 
 @unittest.skipUnless(os.geteuid() == 0, "only root can make a small disk")
@@ -390,7 +462,9 @@ class FullDisk(Matrix):
     def test_at_start_up(self):
         filled = self.fill()
         launch = self.launch(PACED)
-        self.named(launch, "cannot write .*/out/config.yaml", filled, "stopped, exit code 1", expected_s=2)  # of the launch
+        self.named(
+            launch, "cannot write .*/out/config.yaml", filled, "stopped, exit code 1", expected_s=2
+        )  # of the launch
         self.assertEqual(1, launch.ended(), launch.log())
         self.assertEqual([self.filler], list(launch.out.iterdir()))
 
@@ -399,8 +473,12 @@ class FullDisk(Matrix):
         launch = self.launch(PACED, "checkpoint_interval:=0.2")
         launch.saw(THREE_QUARTERS, SOON)
         filled = self.fill()
-        self.named(launch, "results could not be written: cannot write .*/out/", filled,
-                   "stopped, exit code 1; with room again, resumed to the same bits")
+        self.named(
+            launch,
+            "results could not be written: cannot write .*/out/",
+            filled,
+            "stopped, exit code 1; with room again, resumed to the same bits",
+        )
         self.assertGreater(self.assert_ended(launch), 100)
         self.filler.unlink()
         self.assert_same(self.resume())
@@ -410,8 +488,12 @@ class FullDisk(Matrix):
         launch = self.launch(PACED, "checkpoint_interval:=0")
         launch.saw(THREE_QUARTERS, SOON)
         filled = self.fill()
-        self.named(launch, "results could not be written: cannot write .*/out/train.bag: No space left on device", filled,
-                   "stopped at the next chunk of the bag, exit code 1; the bag holds the whole ones")
+        self.named(
+            launch,
+            "results could not be written: cannot write .*/out/train.bag: No space left on device",
+            filled,
+            "stopped at the next chunk of the bag, exit code 1; the bag holds the whole ones",
+        )
         self.assertGreater(self.assert_ended(launch), 10)
         self.assertTrue((launch.out / "train.bag").exists())
 
@@ -420,7 +502,12 @@ class FullDisk(Matrix):
         launch = self.launch(PACED, "checkpoint_interval:=0.2", "on_write_error:=go_on")
         launch.saw(THREE_QUARTERS, SOON)
         filled = self.fill()
-        self.named(launch, "cannot write .*/out/.*: the run goes on without records", filled, "goes on to its end, exit code 1; same digest")
+        self.named(
+            launch,
+            "cannot write .*/out/.*: the run goes on without records",
+            filled,
+            "goes on to its end, exit code 1; same digest",
+        )
         self.assertGreater(self.assert_ended(launch), 100)
         self.assertIn(undisturbed(self.settings)[0]["state_digest"], launch.log())
 
@@ -429,7 +516,12 @@ class FullDisk(Matrix):
         launch = self.launch(PACED, "checkpoint_interval:=0")
         launch.saw(THE_END, SOON)
         filled = self.fill()
-        self.named(launch, "results could not be written: cannot write .*/out/", filled, "stopped, exit code 1; the bag holds the whole chunks")
+        self.named(
+            launch,
+            "results could not be written: cannot write .*/out/",
+            filled,
+            "stopped, exit code 1; the bag holds the whole chunks",
+        )
         self.assertGreater(self.assert_ended(launch), 10)
 
 
@@ -465,8 +557,13 @@ class Full(Matrix):
         launch = self.launch(PACED, "on_lost_node:=stop")
         launch.saw(A_QUARTER, SOON)
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, "the run broke down: " + RANK + r", exchange \d+: closed the connection", killed, "stopped, exit code 4",
-                   expected_s=1)
+        self.named(
+            launch,
+            "the run broke down: " + RANK + r", exchange \d+: closed the connection",
+            killed,
+            "stopped, exit code 4",
+            expected_s=1,
+        )
         self.assertGreater(self.assert_stopped(launch, 4, "closed the connection"), 50)  # 0.5 s
 
     @cell("kill -9 of a wagon node", "mid-run, shared_memory:=false")
@@ -474,7 +571,9 @@ class Full(Matrix):
         launch = self.launch(PACED, "shared_memory:=false")
         launch.saw(A_QUARTER, SOON)
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, RANK + r", exchange \d+: c", killed, "brought back, same bits")  # closed, or connection broke
+        self.named(
+            launch, RANK + r", exchange \d+: c", killed, "brought back, same bits"
+        )  # closed, or connection broke
         self.assert_same(launch)
 
     @cell("kill -9 of all wagon nodes", "paused before an exchange that takes snapshots")
@@ -486,7 +585,12 @@ class Full(Matrix):
             self.signal(signal.SIGKILL, node)
         resumed = time.monotonic()
         self.call("resume")
-        self.named(launch, r"wagon_005 \(vehicles 5-6\), exchange 499: ", resumed, "brought back when the run goes on, same bits")
+        self.named(
+            launch,
+            r"wagon_005 \(vehicles 5-6\), exchange 499: ",
+            resumed,
+            "brought back when the run goes on, same bits",
+        )
         self.assert_same(launch)
         self.assertEqual(3, launch.log().count(" is back after "))
 
@@ -495,17 +599,29 @@ class Full(Matrix):
         launch = self.launch_nodes(self.wagon("wagon_001"), self.wagon("wagon_004"), recovery_timeout_s=2)
         launch.saw(A_QUARTER, SOON)
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, "no node has taken its place within 2 s: ", killed, "stopped at recovery_timeout (here 2 s), exit code 4",
-                   expected_s=2)
-        self.assertGreater(self.assert_stopped(launch, 4, "closed the connection; no node has taken its place within 2 s: "), 50)
+        self.named(
+            launch,
+            "no node has taken its place within 2 s: ",
+            killed,
+            "stopped at recovery_timeout (here 2 s), exit code 4",
+            expected_s=2,
+        )
+        self.assertGreater(
+            self.assert_stopped(launch, 4, "closed the connection; no node has taken its place within 2 s: "), 50
+        )
 
     @cell("SIGSTOP, later SIGCONT", "start-up")
     def test_stop_at_start_up(self):
         launch = self.launch(PACED)
         stopped = self.signal(signal.SIGSTOP)
         # Whether it had been found before is up to chance.
-        self.named(launch, "(1 of 2 wagon nodes are missing after 5 s|waiting for 1 s already for 1 of 2 wagon nodes): " + RANK,
-                   stopped, "waited for, same bits", expected_s=5)
+        self.named(
+            launch,
+            "(1 of 2 wagon nodes are missing after 5 s|waiting for 1 s already for 1 of 2 wagon nodes): " + RANK,
+            stopped,
+            "waited for, same bits",
+            expected_s=5,
+        )
         self.signal(signal.SIGCONT)
         self.assert_same(launch)
 
@@ -513,8 +629,13 @@ class Full(Matrix):
         launch = self.launch(PACED, "exchange_timeout:=1.5", *arguments)
         launch.saw(A_QUARTER, SOON)
         stopped = self.signal(signal.SIGSTOP)
-        self.named(launch, RANK + r", exchange \d+: no reply within 1.5 s", stopped,
-                   "lost at exchange_timeout (here 1.5 s), brought back, same bits", expected_s=1.5)
+        self.named(
+            launch,
+            RANK + r", exchange \d+: no reply within 1.5 s",
+            stopped,
+            "lost at exchange_timeout (here 1.5 s), brought back, same bits",
+            expected_s=1.5,
+        )
         return launch
 
     @cell("SIGSTOP, later SIGCONT", "mid-run, awake again after the deadline")
@@ -539,7 +660,9 @@ class Full(Matrix):
         old = self.master.process_of("wagon_004")
         self.start("wagon_node", "wagon_node")
         launch.saw(RANK + " is back after", SOON)
-        os.kill(old, signal.SIGCONT)  # its ROS master tells it to leave, and roslaunch respawns it: lost and found once more
+        os.kill(
+            old, signal.SIGCONT
+        )  # its ROS master tells it to leave, and roslaunch respawns it: lost and found once more
         self.assert_same(launch)
 
     @cell("SIGSTOP, later SIGCONT", "shut-down, no SIGCONT")
@@ -547,8 +670,13 @@ class Full(Matrix):
         launch = self.launch(PACED)
         launch.saw(THE_END, SOON)
         stopped = self.signal(signal.SIGSTOP)
-        self.named(launch, r"\[train/wagon_004-\d+\] escalating to SIGTERM", stopped,
-                   "killed by roslaunch (here: --sigint-timeout=5), same bits", expected_s=5)
+        self.named(
+            launch,
+            r"\[train/wagon_004-\d+\] escalating to SIGTERM",
+            stopped,
+            "killed by roslaunch (here: --sigint-timeout=5), same bits",
+            expected_s=5,
+        )
         self.assert_same(launch)
 
     @cell("NaN in a record of a reply", "mid-run")
@@ -586,8 +714,13 @@ class Full(Matrix):
         self.signal(signal.SIGKILL)
         started = time.monotonic()
         other = self.start("train_brake", "faulty_rank.py", "/train/sound", "version", "-1")
-        self.named(launch, RANK + ", configuration: the master speaks protocol version .*: not taken in its place",
-                   started, "not taken; with another replacement, same bits", expected_s=2)  # and its start
+        self.named(
+            launch,
+            RANK + ", configuration: the master speaks protocol version .*: not taken in its place",
+            started,
+            "not taken; with another replacement, same bits",
+            expected_s=2,
+        )  # and its start
         other.kill()
         self.start("wagon_node", "wagon_node")
         self.assert_same(launch)
@@ -603,10 +736,17 @@ class Full(Matrix):
     @cell("roscore killed", "start-up, a wagon node still to come")
     def test_roscore_at_start_up(self):
         launch = self.launch_nodes(self.wagon("wagon_001"), startup_timeout_s=3)
-        self.assertTrue(wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON))
+        self.assertTrue(
+            wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON)
+        )
         self.master.kill()
-        self.named(launch, r"/train/wagon_00\d: cannot be looked up: the ROS master at .* does not answer", time.monotonic(),
-                   "stopped at startup_timeout (here 3 s), exit code 4", expected_s=3)
+        self.named(
+            launch,
+            r"/train/wagon_00\d: cannot be looked up: the ROS master at .* does not answer",
+            time.monotonic(),
+            "stopped at startup_timeout (here 3 s), exit code 4",
+            expected_s=3,
+        )
         self.assertEqual(0, self.assert_stopped(launch, 4, "the ROS master at"))
 
     @cell("roscore killed", "start-up, before the master knows it; Ctrl-C")
@@ -627,8 +767,13 @@ class Full(Matrix):
         launch.saw(A_QUARTER, SOON)
         self.master.kill()
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, RANK + r", .*within 3 s: cannot be looked up: the ROS master at .* does not answer", killed,
-                   "stopped at recovery_timeout (here 3 s), exit code 4", expected_s=3)
+        self.named(
+            launch,
+            RANK + r", .*within 3 s: cannot be looked up: the ROS master at .* does not answer",
+            killed,
+            "stopped at recovery_timeout (here 3 s), exit code 4",
+            expected_s=3,
+        )
         self.assertGreater(self.assert_stopped(launch, 4, "the ROS master at"), 50)
 
     @cell("roscore killed", "mid-run, then a wagon node; later a new roscore")
@@ -637,8 +782,13 @@ class Full(Matrix):
         launch.saw(A_QUARTER, SOON)
         self.master.kill()
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, "waiting for 5 s already for a node in the place of " + RANK + ": cannot be looked up", killed,
-                   "brought back with the new roscore, same bits", expected_s=5)
+        self.named(
+            launch,
+            "waiting for 5 s already for a node in the place of " + RANK + ": cannot be looked up",
+            killed,
+            "brought back with the new roscore, same bits",
+            expected_s=5,
+        )
         self.master.start()
         self.assert_same(launch)
 
@@ -653,7 +803,9 @@ class Full(Matrix):
     @cell("Ctrl-C", "start-up, a wagon node still to come")
     def test_ctrl_c_at_start_up(self):
         launch = self.launch_nodes(self.wagon("wagon_001"))
-        self.assertTrue(wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON))
+        self.assertTrue(
+            wait_until(lambda: {"/train/master/pause", "/train/wagon_001/step"} <= self.master.services(), SOON)
+        )
         interrupted = launch.interrupt()
         self.named(launch, r"interrupted at 0\.000 s", interrupted, "stopped, exit code 130")
         self.assertEqual(0, self.assert_stopped(launch, 130))
@@ -694,8 +846,12 @@ class Full(Matrix):
         launch.saw("exchange 100: waiting for 1 s already for 1 of 2 wagon nodes: " + RANK, SOON)
         killed = time.monotonic()
         replacement.kill()
-        self.named(launch, RANK + ", exchange 100: closed the connection: not taken in its place", killed,
-                   "the next one is taken, same bits")
+        self.named(
+            launch,
+            RANK + ", exchange 100: closed the connection: not taken in its place",
+            killed,
+            "the next one is taken, same bits",
+        )
         self.start("wagon_node", "wagon_node")
         self.assert_same(launch)
 
@@ -716,7 +872,9 @@ class Full(Matrix):
         launch.saw(A_QUARTER, SOON)
         time.sleep(0.5)
         killed = self.signal(signal.SIGKILL)
-        self.named(launch, RANK + r", exchange \d+: ", killed, "brought back with less than 1000 exchanges replayed, same bits")
+        self.named(
+            launch, RANK + r", exchange \d+: ", killed, "brought back with less than 1000 exchanges replayed, same bits"
+        )
         self.assert_same(launch)
         self.assertLess(int(re.search(r"(\d+) exchanges replayed", launch.log())[1]), 1000)
 
@@ -754,8 +912,13 @@ class Full(Matrix):
         started = time.monotonic()
         other = self.start("ltd_master", "ltd_master", f"_scenario:={SHORT_TRAIN}", "_ranks:=2", name="other")
         self.assertEqual(4, other.wait(SOON))
-        self.named(launch, "refused to be configured by /train/other: this wagon node is driven in another run", started,
-                   "refused, its exit code is 4; same bits", expected_s=1)  # and its start
+        self.named(
+            launch,
+            "refused to be configured by /train/other: this wagon node is driven in another run",
+            started,
+            "refused, its exit code is 4; same bits",
+            expected_s=1,
+        )  # and its start
         self.assert_same(launch)
 
 
@@ -795,7 +958,12 @@ class Resumed(Matrix):
         launch = self.launch_checkpointed()
         launch.saw(THE_END, SOON)
         killed = self.signal(signal.SIGKILL, "master")
-        self.named(launch, r"REQUIRED process \[train/master-\d+\] has died", killed, "ended; results complete, or resumed to the same bits")
+        self.named(
+            launch,
+            r"REQUIRED process \[train/master-\d+\] has died",
+            killed,
+            "ended; results complete, or resumed to the same bits",
+        )
         self.assert_killed(launch)
         again = self.resume()
         if again.ended() == 2:
@@ -828,8 +996,14 @@ class RandomKills(Matrix):
 
     def simulated_s(self):
         """Time of the train."""
-        done = subprocess.run(["rosservice", "call", "/train/master/step", "0"], env=self.master.environment, check=True,
-                              stdout=subprocess.PIPE, text=True, timeout=60)
+        done = subprocess.run(
+            ["rosservice", "call", "/train/master/step", "0"],
+            env=self.master.environment,
+            check=True,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=60,
+        )
         return float(re.search(r"simulated_s: (\S+)", done.stdout)[1])
 
     @cell("20 kill -9 of random wagon nodes", "spread over a run of 30 s, four of them while one is brought back")
@@ -868,9 +1042,16 @@ def short():
     """A suite of about a minute."""
     RandomKills.kills, RandomKills.settings, RandomKills.last_kill_s = 5, "duration_s=8", 4
     load = unittest.defaultTestLoader
-    return unittest.TestSuite([load.loadTestsFromTestCase(Short), SideChannels("test_full"),
-                               SideChannels("test_file_size_limit"), FullDisk("test_in_mid_run"), Resumed("test_kill"),
-                               RandomKills("test_random_kills")])
+    return unittest.TestSuite(
+        [
+            load.loadTestsFromTestCase(Short),
+            SideChannels("test_full"),
+            SideChannels("test_file_size_limit"),
+            FullDisk("test_in_mid_run"),
+            Resumed("test_kill"),
+            RandomKills("test_random_kills"),
+        ]
+    )
 
 
 if __name__ == "__main__":

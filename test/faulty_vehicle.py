@@ -54,8 +54,13 @@ class FaultyVehicles(load_example().OwnVehicles):
         if self.fault == "slow" and request.exchange == FAULT_EXCHANGE:
             time.sleep(1.5)
         reply = super().step(request)
-        told = StepResponse(ok=reply.ok, message=reply.message, exchange=reply.exchange,
-                            head_displacement_m=reply.head_displacement_m, head_velocity_mps=list(reply.head_velocity_mps))
+        told = StepResponse(
+            ok=reply.ok,
+            message=reply.message,
+            exchange=reply.exchange,
+            head_displacement_m=reply.head_displacement_m,
+            head_velocity_mps=list(reply.head_velocity_mps),
+        )
         if self.fault == "velocity":
             told.head_velocity_mps = [1.02 * v for v in told.head_velocity_mps]
         if self.fault == "nan" and request.exchange >= FAULT_EXCHANGE and told.ok:

@@ -41,8 +41,12 @@ class RosMaster:
         self.start()
 
     def start(self):
-        self.process = subprocess.Popen(["rosmaster", "--core", "-p", str(self.port)], env=self.environment,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            ["rosmaster", "--core", "-p", str(self.port)],
+            env=self.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         assert wait_until(lambda: rosgraph.is_master_online(self.uri), 30), "no ROS master"
 
     def services(self):
@@ -71,9 +75,11 @@ class RosMaster:
     def process_of(self, node, timeout_s=30):
         """The process of a node, which is waited for."""
         found = []
+
         def look():
             found[:] = [process for process, name in self.processes().items() if name == node]
             return found
+
         assert wait_until(look, timeout_s), f"there is no {node}"
         return found[0]
 
@@ -88,9 +94,20 @@ class Launch:
         self.lines = []  # (time, text)
         # A node that does not listen to SIGINT is given 5 s here instead of 15.
         self.process = subprocess.Popen(
-            ["roslaunch", "--sigint-timeout=5", *target, f"out:={self.out}", f"exit_status_file:={self.status_file}",
-             *arguments],
-            env=master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+            [
+                "roslaunch",
+                "--sigint-timeout=5",
+                *target,
+                f"out:={self.out}",
+                f"exit_status_file:={self.status_file}",
+                *arguments,
+            ],
+            env=master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
         threading.Thread(target=self._read, daemon=True).start()
 
     def _read(self):
@@ -103,9 +120,11 @@ class Launch:
     def saw(self, pattern, timeout_s, since=0.0):
         """When the first line came that holds the pattern; it is waited for."""
         found = []
+
         def look():
             found[:] = [when for when, line in list(self.lines) if when >= since and re.search(pattern, line)]
             return found or self.process.poll() is not None
+
         wait_until(look, timeout_s)
         look()
         assert found, f"'{pattern}' was not logged within {timeout_s} s:\n{self.log()}"
@@ -144,8 +163,15 @@ class LaunchTest(unittest.TestCase):
 
     def tool(self, *command, timeout_s=30):
         """The output of a command, to its end."""
-        done = subprocess.run(command, env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=timeout_s, check=False)
+        done = subprocess.run(
+            command,
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=timeout_s,
+            check=False,
+        )
         return done.stdout
 
 
@@ -160,11 +186,16 @@ def messages(bag_file):
 
 def is_beginning(bag, whole):
     """Whether all that is in a bag is what another one begins with."""
-    return all(whole[topic][:len(found)] == found for topic, found in bag.items())
+    return all(whole[topic][: len(found)] == found for topic, found in bag.items())
 
 
 def train_sim(*arguments, scenario=SHORT_TRAIN):
     """A train in one process. @return its summary"""
-    done = subprocess.run(["rosrun", "train_sim", "train_sim", "run", *([str(scenario)] if scenario else []), *arguments], check=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    done = subprocess.run(
+        ["rosrun", "train_sim", "train_sim", "run", *([str(scenario)] if scenario else []), *arguments],
+        check=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     return json.loads(done.stdout)

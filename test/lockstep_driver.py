@@ -20,8 +20,13 @@ EXCHANGES_PER_PERIOD = 50  # of 0.1 s
 class LockstepDriver(LaunchTest):
     def driver(self, *command):
         """Starts a driver's node, /train/driver, and waits for its service."""
-        node = subprocess.Popen([*command, "__ns:=/train", "__name:=driver"], env=self.master.environment,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        node = subprocess.Popen(
+            [*command, "__ns:=/train", "__name:=driver"],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.addCleanup(node.kill)
         return node
 
@@ -39,9 +44,17 @@ class LockstepDriver(LaunchTest):
     def launch(self, name, duration_s, *arguments, settings=()):
         folder = self.folder / name
         folder.mkdir()
-        return Launch(self.master, folder, ("train_brake", "train.launch"), f"scenario:={FREIGHT}", "vehicles:=11",
-                      "model:=ltd", "driver:=driver", "set:=" + " ".join([*SETTINGS, *settings, f"duration_s={duration_s}"]),
-                      *arguments)
+        return Launch(
+            self.master,
+            folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={FREIGHT}",
+            "vehicles:=11",
+            "model:=ltd",
+            "driver:=driver",
+            "set:=" + " ".join([*SETTINGS, *settings, f"duration_s={duration_s}"]),
+            *arguments,
+        )
 
     def run_train(self, name, duration_s, *arguments, code=0, **options):
         launch = self.launch(name, duration_s, *arguments, **options)
@@ -53,9 +66,12 @@ class LockstepDriver(LaunchTest):
 
     def test_a_python_driver_is_the_same_at_any_pace_and_on_any_nodes(self):
         driver = self.example("hold_speed", "_speed_kmh:=9")
-        runs = [self.run_train("alone", 90), self.run_train("one", 90, "on_nodes:=true", "nodes:=1"),
-                self.run_train("three", 90, "on_nodes:=true", "nodes:=3", "real_time_factor:=20"),
-                self.run_train("again", 90)]
+        runs = [
+            self.run_train("alone", 90),
+            self.run_train("one", 90, "on_nodes:=true", "nodes:=1"),
+            self.run_train("three", 90, "on_nodes:=true", "nodes:=3", "real_time_factor:=20"),
+            self.run_train("again", 90),
+        ]
         self.end(driver)
         first = runs[0].summary()
         self.assertEqual(1, len({run.summary()["state_digest"] for run in runs}))
@@ -66,8 +82,12 @@ class LockstepDriver(LaunchTest):
         self.assertAlmostEqual(9, first["final_speed_kmh"]["mean"], delta=0.5)
 
         # In process: by the bag, as a scenario; and by a driver who does again what was recorded.
-        verified = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(runs[2].out)], stdout=subprocess.PIPE,
-                                  stderr=subprocess.STDOUT, text=True)
+        verified = subprocess.run(
+            ["rosrun", "train_sim", "train_sim", "verify", str(runs[2].out)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.assertEqual(0, verified.returncode, verified.stdout)
         self.assertIn(first["state_digest"], verified.stdout)
         self.assertEqual(first["state_digest"], train_sim(scenario=runs[1].out / "replay.yaml")["state_digest"])
@@ -76,8 +96,9 @@ class LockstepDriver(LaunchTest):
 
     def test_a_train_is_stopped_at_a_place(self):
         self.example("stop_at_place", "_place_m:=700")
-        launch = self.run_train("run", 200, settings=["initial_speed_kmh=40", "until={standing: true}",
-                                                      "exchange_interval_s=0.005"])
+        launch = self.run_train(
+            "run", 200, settings=["initial_speed_kmh=40", "until={standing: true}", "exchange_interval_s=0.005"]
+        )
         summary = launch.summary()
         self.assertEqual("until", summary["ended_by"])
         applied = [command for _, command in self.given(launch)]
@@ -86,8 +107,11 @@ class LockstepDriver(LaunchTest):
         self.assertLess(abs(summary["stop_distance_m"] - 700), 30, summary)
 
     def test_a_killed_driver_triggers_the_policy(self):
-        for policy, code, consequence in (("emergency", 0, "The emergency brake is applied"), ("hold", 0, "as he has left it"),
-                                          ("stop", 4, "the driver is lost")):
+        for policy, code, consequence in (
+            ("emergency", 0, "The emergency brake is applied"),
+            ("hold", 0, "as he has left it"),
+            ("stop", 4, "the driver is lost"),
+        ):
             driver = self.example("hold_speed", "_speed_kmh:=30")
             launch = self.launch(policy, 8, "real_time_factor:=1", f"on_lost_driver:={policy}")
             launch.saw(r" [1-5]\.\d+ of 8 s", 90)
@@ -100,8 +124,9 @@ class LockstepDriver(LaunchTest):
             if policy == "emergency":
                 self.assertEqual(["throttle 0", "emergency"], [command for _, command in given[-2:]])
                 self.assertEqual(0, given[-1][0] % EXCHANGES_PER_PERIOD)
-                verified = subprocess.run(["rosrun", "train_sim", "train_sim", "verify", str(launch.out)],
-                                          stdout=subprocess.PIPE, text=True)
+                verified = subprocess.run(
+                    ["rosrun", "train_sim", "train_sim", "verify", str(launch.out)], stdout=subprocess.PIPE, text=True
+                )
                 self.assertEqual(0, verified.returncode, verified.stdout)
             else:
                 self.assertNotIn("emergency", [command for _, command in given])
@@ -141,8 +166,15 @@ class LockstepDriver(LaunchTest):
         launch.saw(r" ([2-9]|1\d)\.\d+ of 20 s", 90)
         launch.interrupt()
         self.assertEqual(130, launch.ended(60), launch.log())
-        rest = Launch(self.master, launch.out.parent, ("train_brake", "train.launch"), f"resume:={launch.out}", "vehicles:=11",
-                      "model:=ltd", "driver:=driver")
+        rest = Launch(
+            self.master,
+            launch.out.parent,
+            ("train_brake", "train.launch"),
+            f"resume:={launch.out}",
+            "vehicles:=11",
+            "model:=ltd",
+            "driver:=driver",
+        )
         self.assertEqual(0, rest.ended(60), rest.log())
         self.assertEqual(whole.summary()["state_digest"], rest.summary()["state_digest"])
 
@@ -167,7 +199,9 @@ class LockstepDriver(LaunchTest):
         driver = self.faulty("refused", 100)
         launch = self.run_train("refused", 2)
         self.assertEqual([], self.given(launch))
-        self.assertEqual(2, len(re.findall("exchange 100: a command of the driver /train/driver is refused", launch.log())))
+        self.assertEqual(
+            2, len(re.findall("exchange 100: a command of the driver /train/driver is refused", launch.log()))
+        )
         driver.send_signal(signal.SIGTERM)
         told = driver.communicate(timeout=10)[0]
         self.assertIn("refused: reduction_kpa must be > 0", told)

@@ -40,8 +40,21 @@ FOLDER = tempfile.TemporaryDirectory()
 def simulated(name, scenario, *arguments):
     """The folder of a run of train_sim, made once."""
     folder = pathlib.Path(FOLDER.name) / name
-    subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(CONFIG / "scenarios" / f"{scenario}.yaml"), "--out",
-                    str(folder), *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run(
+        [
+            "rosrun",
+            "train_sim",
+            "train_sim",
+            "run",
+            str(CONFIG / "scenarios" / f"{scenario}.yaml"),
+            "--out",
+            str(folder),
+            *arguments,
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     return folder
 
 
@@ -78,12 +91,17 @@ class Page:
 
     def __init__(self, path):
         self.text = path.read_text()
-        self.figures = {name: html.unescape(content) for name, content in
-                        re.findall(r'<figure id="([^"]+)">(.*?)</figure>', self.text, flags=re.DOTALL)}
-        self.left_out = {title: html.unescape(reason) for title, reason in
-                         re.findall(r"<li><b>(.*?)</b>: (.*?)</li>", self.text)}
-        self.numbers = [dict(re.findall(r'data-key="([^"]+)" data-value="([^"]+)"', card))
-                        for card in re.findall(r'<article class="card">(.*?)</article>', self.text, flags=re.DOTALL)]
+        self.figures = {
+            name: html.unescape(content)
+            for name, content in re.findall(r'<figure id="([^"]+)">(.*?)</figure>', self.text, flags=re.DOTALL)
+        }
+        self.left_out = {
+            title: html.unescape(reason) for title, reason in re.findall(r"<li><b>(.*?)</b>: (.*?)</li>", self.text)
+        }
+        self.numbers = [
+            dict(re.findall(r'data-key="([^"]+)" data-value="([^"]+)"', card))
+            for card in re.findall(r'<article class="card">(.*?)</article>', self.text, flags=re.DOTALL)
+        ]
 
     def caption(self, name):
         return re.search(r"<figcaption>(.*?)</figcaption>", self.figures[name], flags=re.DOTALL).group(1)
@@ -117,7 +135,9 @@ class ReportTest(unittest.TestCase):
     def test_any_name_stands_in_legends_as_it_is_written(self):
         names = ["_beginsso", r"$x_1$ cost\$5", "50% #3", "a\x1b[31mb\u202ec", "two\nlines"]
         group = group_of(*(self.copy(name) for name in names))
-        self.assertEqual(["\u200b_beginsso", r"$x_1$ cost\$5", "50% #3", "a?[31mb?c", "two lines"], [r.label for r in group.runs])
+        self.assertEqual(
+            ["\u200b_beginsso", r"$x_1$ cost\$5", "50% #3", "a?[31mb?c", "two lines"], [r.label for r in group.runs]
+        )
         page, printed = self.report(*(self.here / name for name in names))
         speeds = re.findall(r"<text[^>]*>([^<]*)</text>", page.figures["speeds"])
         for run in group.runs:  # whole, and not as a formula, whose characters stand one by one
@@ -128,19 +148,25 @@ class ReportTest(unittest.TestCase):
         axis = mock.Mock()
         style.powers_of_ten(axis)
         power = axis.set_major_formatter.call_args[0][0]
-        self.assertEqual(["10\u207b\u00b3", "10\u2070", "10\u00b9\u2075", "5", "0.02"],
-                         [power(x, 0) for x in (1e-3, 1.0, 1e15, 5.0, 0.02)])
+        self.assertEqual(
+            ["10\u207b\u00b3", "10\u2070", "10\u00b9\u2075", "5", "0.02"],
+            [power(x, 0) for x in (1e-3, 1.0, 1e15, 5.0, 0.02)],
+        )
 
     def test_different_names_have_different_anchors(self):
-        self.assertEqual({"a b": "a_b", "a-b": "a_b_2", "A_B": "a_b_3", "": "runs", "$": "runs_2"},
-                         command.anchors_of(["a b", "a-b", "A_B", "", "$"]))
+        self.assertEqual(
+            {"a b": "a_b", "a-b": "a_b_2", "A_B": "a_b_3", "": "runs", "$": "runs_2"},
+            command.anchors_of(["a b", "a-b", "A_B", "", "$"]),
+        )
 
     def test_files_of_other_programs_are_told(self):
-        for name, text, complaint in (("summary.json", '{"a": 1}', "summary.json is not the summary of a run: scenario is missing"),
-                                      ("summary.json", "[1]", "summary.json is damaged: it is no list of keys"),
-                                      ("slides.csv", "x,y\n1,2\n", "slides.csv is damaged: it has no column vehicle, "),
-                                      ("track_wear.csv", "from_m,creep_j\n1,2\n", "damaged: it has no column brake_j"),
-                                      ("couplers.csv", "x,y\n1,2\n", "couplers.csv is damaged: ")):
+        for name, text, complaint in (
+            ("summary.json", '{"a": 1}', "summary.json is not the summary of a run: scenario is missing"),
+            ("summary.json", "[1]", "summary.json is damaged: it is no list of keys"),
+            ("slides.csv", "x,y\n1,2\n", "slides.csv is damaged: it has no column vehicle, "),
+            ("track_wear.csv", "from_m,creep_j\n1,2\n", "damaged: it has no column brake_j"),
+            ("couplers.csv", "x,y\n1,2\n", "couplers.csv is damaged: "),
+        ):
             folder = self.copy(f"foreign {name} {text[:4]}")
             (folder / name).write_text(text)
             _, printed = self.report(folder, code=1)
@@ -151,11 +177,17 @@ class ReportTest(unittest.TestCase):
         summary = json.loads((six_wagons() / "summary.json").read_text())
         good = train_brake.run_files.checked(summary, train_brake.run_files.SUMMARY, pathlib.Path("x"), "y")
         self.assertEqual(summary, good)
-        for change, complaint in (({"simulated_s": "5"}, "simulated_s is '5'"), ({"vehicles": True}, "vehicles is True"),
-                                  ({"energy": []}, "energy is not a map"), ({"stops": [{"time_s": 1}]}, "stops[0].distance_m is missing"),
-                                  ({"max_tension_n": {"value": None}}, "max_tension_n.value is missing (and 2 more)")):
+        for change, complaint in (
+            ({"simulated_s": "5"}, "simulated_s is '5'"),
+            ({"vehicles": True}, "vehicles is True"),
+            ({"energy": []}, "energy is not a map"),
+            ({"stops": [{"time_s": 1}]}, "stops[0].distance_m is missing"),
+            ({"max_tension_n": {"value": None}}, "max_tension_n.value is missing (and 2 more)"),
+        ):
             with self.assertRaisesRegex(train_brake.BagError, re.escape(complaint)):
-                train_brake.run_files.checked({**summary, **change}, train_brake.run_files.SUMMARY, pathlib.Path("x"), "y")
+                train_brake.run_files.checked(
+                    {**summary, **change}, train_brake.run_files.SUMMARY, pathlib.Path("x"), "y"
+                )
 
     def test_a_summary_of_something_else_is_not_of_a_bag_with_a_name_of_its_own(self):
         folder = self.copy("mine")
@@ -178,15 +210,29 @@ class ReportTest(unittest.TestCase):
     def test_a_full_output_does_not_deny_the_page(self):
         out = self.here / "page.html"
         with open("/dev/full", "w") as full:
-            done = subprocess.run(["rosrun", "train_brake", "report", str(six_wagons()), "--out", str(out)], stdout=full,
-                                  stderr=subprocess.PIPE, text=True)
+            done = subprocess.run(
+                ["rosrun", "train_brake", "report", str(six_wagons()), "--out", str(out)],
+                stdout=full,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
         self.assertEqual((0, True), (done.returncode, out.exists()), done.stderr)
         self.assertNotIn("could not be written", done.stderr)
 
     def test_a_page_needs_no_locale(self):
         folder = self.copy("Z\u00fcge")
-        done = subprocess.run(["rosrun", "train_brake", "report", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              env={**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii"})
+        done = subprocess.run(
+            ["rosrun", "train_brake", "report", str(folder)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            env={
+                **os.environ,
+                "LC_ALL": "C",
+                "PYTHONUTF8": "0",
+                "PYTHONCOERCECLOCALE": "0",
+                "PYTHONIOENCODING": "ascii",
+            },
+        )
         self.assertEqual(0, done.returncode, done.stdout)
 
     # What the page says
@@ -194,8 +240,15 @@ class ReportTest(unittest.TestCase):
     def test_numbers_are_those_of_the_summary(self):
         page = self.page(two_d())
         summary = json.loads((two_d() / "summary.json").read_text())
-        for key in ("vehicles", "simulated_s", "final_speed_kmh.mean", "max_tension_n.value", "max_compression_n.value",
-                    "energy.residual_j", "real_time_factor"):
+        for key in (
+            "vehicles",
+            "simulated_s",
+            "final_speed_kmh.mean",
+            "max_tension_n.value",
+            "max_compression_n.value",
+            "energy.residual_j",
+            "real_time_factor",
+        ):
             expected = summary
             for part in key.split("."):
                 expected = expected[part]
@@ -204,7 +257,9 @@ class ReportTest(unittest.TestCase):
         self.assertIn(f"version {summary['version']}", page.text)
         self.assertIn(f"train_sim run {two_d()}/config.yaml", page.text)
         _, *configuration = (two_d() / "config.yaml").read_text().splitlines()  # without the mark of a run's folder
-        self.assertEqual(configuration, html.unescape(re.search("<pre>(.*?)</pre>", page.text, re.DOTALL).group(1)).splitlines())
+        self.assertEqual(
+            configuration, html.unescape(re.search("<pre>(.*?)</pre>", page.text, re.DOTALL).group(1)).splitlines()
+        )
 
     def test_numbers_of_a_bag_alone(self):
         """Without summary.json the same numbers come from the records."""
@@ -223,6 +278,7 @@ class ReportTest(unittest.TestCase):
     def test_a_bag_without_its_scenario(self):
         def without(topic, *rest):
             return None if topic == "/train/scenario" else (topic, *rest)
+
         bag = rewritten(six_wagons() / "train.bag", self.here / "alone.bag", without)
         page = self.page(bag)
         self.assertIn("unknown: a bag alone does not tell", page.text)
@@ -240,12 +296,29 @@ class ReportTest(unittest.TestCase):
 
     def test_everything_there_is_to_see_of_a_2d_train(self):
         page = self.page(two_d(), "--figures", self.here / "figures")
-        names = ["speeds", "over_the_distance", "engineering_numbers", "consist", "pressures", "brake_table",
-                 "shoe_and_wheel_100", "largest_coupler_forces", "coupler_105", "coupler_force_picture", "pressure_picture",
-                 "brake_wave", "slip_picture", "track_wear", "acceleration_picture", "energy"]
+        names = [
+            "speeds",
+            "over_the_distance",
+            "engineering_numbers",
+            "consist",
+            "pressures",
+            "brake_table",
+            "shoe_and_wheel_100",
+            "largest_coupler_forces",
+            "coupler_105",
+            "coupler_force_picture",
+            "pressure_picture",
+            "brake_wave",
+            "slip_picture",
+            "track_wear",
+            "acceleration_picture",
+            "energy",
+        ]
         self.assertEqual(names, list(page.figures))  # in this order
-        self.assertEqual({"Brake pipe, whole train", "Air in the brake", "Wheels that slide", "A wagon over the dip"},
-                         set(page.left_out))
+        self.assertEqual(
+            {"Brake pipe, whole train", "Air in the brake", "Wheels that slide", "A wagon over the dip"},
+            set(page.left_out),
+        )
         self.assertEqual("The track has no dip.", page.left_out["A wagon over the dip"])
         tables = {"engineering_numbers", "consist"}
         for name in (name for name in names if name not in tables):
@@ -257,22 +330,44 @@ class ReportTest(unittest.TestCase):
     def test_two_runs_are_overlaid_and_subtracted(self):
         page = self.page(ltd(), two_d())
         difference = "2D train \u2212 LTD"
-        for name in ("speeds", "largest_coupler_forces", "coupler_105", "coupler_force_picture", "acceleration_picture"):
+        for name in (
+            "speeds",
+            "largest_coupler_forces",
+            "coupler_105",
+            "coupler_force_picture",
+            "acceleration_picture",
+        ):
             self.assertIn(difference, page.figures[name], name)
         self.assertIn("2D train has the same", page.caption("pressures"))
-        of_runs = [json.loads((folder / "summary.json").read_text())["final_speed_kmh"]["mean"] for folder in (ltd(), two_d())]
-        self.assertIn(f"{difference}: {figure.minus(f'{of_runs[1] - of_runs[0]:+.4f}')} km/h at the last common instant",
-                      page.caption("speeds"))
+        of_runs = [
+            json.loads((folder / "summary.json").read_text())["final_speed_kmh"]["mean"] for folder in (ltd(), two_d())
+        ]
+        self.assertIn(
+            f"{difference}: {figure.minus(f'{of_runs[1] - of_runs[0]:+.4f}')} km/h at the last common instant",
+            page.caption("speeds"),
+        )
 
     def test_what_differs_is_a_table_of_the_changed_keys(self):
-        slower = simulated("slower", "emergency", "--model", "ltd", "--set", "duration_s=10", "--set", "initial_speed_kmh=60",
-                           "--set", "commands[0].time_s=3")
+        slower = simulated(
+            "slower",
+            "emergency",
+            "--model",
+            "ltd",
+            "--set",
+            "duration_s=10",
+            "--set",
+            "initial_speed_kmh=60",
+            "--set",
+            "commands[0].time_s=3",
+        )
         table = changes.table(group_of(ltd(), slower)).table
         self.assertEqual([["commands[0].time_s", "2", "3"], ["initial_speed_kmh", "80", "60"]], sorted(table.rows))
         self.assertIsNone(changes.table(group_of(ltd(), ltd())).table)
 
     def test_each_runs_own_commands_are_marked_by_its_name_beyond_the_curves(self):
-        later = simulated("later", "emergency", "--model", "ltd", "--set", "duration_s=10", "--set", "commands[0].time_s=3")
+        later = simulated(
+            "later", "emergency", "--model", "ltd", "--set", "duration_s=10", "--set", "commands[0].time_s=3"
+        )
         group = group_of(ltd(), later)
         self.assertEqual([(2, "ltd"), (3, "later")], [(command["time_s"], who) for command, _, who in group.commands()])
         with style.applied():
@@ -299,9 +394,14 @@ class ReportTest(unittest.TestCase):
             self.assertEqual((0.0, 10.0), tuple(numpy.round(panel.get_xlim(), 1)))
 
     def test_runs_that_share_no_instant_are_not_subtracted(self):
-        early, late = (rewritten(two_d() / "train.bag", self.here / f"{name}.bag",
-                                 lambda topic, raw, stamp: (topic, raw, stamp) if is_in(stamp.to_sec()) else None)
-                       for name, is_in in (("early", lambda t: t < 4.995), ("late", lambda t: t > 4.995)))
+        early, late = (
+            rewritten(
+                two_d() / "train.bag",
+                self.here / f"{name}.bag",
+                lambda topic, raw, stamp: (topic, raw, stamp) if is_in(stamp.to_sec()) else None,
+            )
+            for name, is_in in (("early", lambda t: t < 4.995), ("late", lambda t: t > 4.995))
+        )
         page = self.page(early, late)
         for name in ("speeds", "pressures", "coupler_105", "coupler_force_picture", "pressure_picture"):
             self.assertIn("No difference: late and early have no instant in common.", page.caption(name), name)
@@ -311,9 +411,13 @@ class ReportTest(unittest.TestCase):
         page = self.page(simulated("dip", "dip"), ltd())
         for name in ("largest_coupler_forces", "coupler_105"):
             self.assertIn("Not shown: 2D train: a single vehicle has no coupler.", page.caption(name))
-        self.assertIn("Not shown: 2D train: a picture along the train needs more than one vehicle.",
-                      page.caption("acceleration_picture"))
-        self.assertIn("Not shown: 2D train: a wave is seen on a train of four vehicles or more.", page.caption("brake_wave"))
+        self.assertIn(
+            "Not shown: 2D train: a picture along the train needs more than one vehicle.",
+            page.caption("acceleration_picture"),
+        )
+        self.assertIn(
+            "Not shown: 2D train: a wave is seen on a train of four vehicles or more.", page.caption("brake_wave")
+        )
 
     def test_a_train_at_rest(self):
         page = self.page(simulated("rest", "../../test/short_train", "--set", "initial_speed_kmh=0"))
@@ -329,20 +433,25 @@ class ReportTest(unittest.TestCase):
         page = self.page(run)
         ours = json.loads((run / "summary.json").read_text())["final_speed_kmh"]["mean"]
         printed = paper.SPEED_KMH["ltd", "emergency"]
-        self.assertRegex(page.figures["table_1"], rf"{printed:.2f}</td>.*{ours:.3f}</td>.*"
-                         + re.escape(figure.minus(f"{ours - printed:+.3f}")) + "</td>")
+        self.assertRegex(
+            page.figures["table_1"],
+            rf"{printed:.2f}</td>.*{ours:.3f}</td>.*" + re.escape(figure.minus(f"{ours - printed:+.3f}")) + "</td>",
+        )
         self.assertIn("table_2", page.figures)
         self.assertIn("Circles: the paper's values", page.caption("speeds"))
         self.assertNotIn("Not compared with the paper", page.text)
         self.assertNotIn("table_1", self.page(ltd()).figures)  # 10 s are not the paper's run
 
     def test_a_changed_run_is_not_the_papers(self):
-        for change, reason in (("initial_speed_kmh=60", "initial_speed_kmh is 60, there 80"),
-                               ("commands[0].kind=release", "commands[0].kind is release, there emergency"),
-                               ("track=down_half_percent", "track.name is down_half_percent, there level")):
+        for change, reason in (
+            ("initial_speed_kmh=60", "initial_speed_kmh is 60, there 80"),
+            ("commands[0].kind=release", "commands[0].kind is release, there emergency"),
+            ("track=down_half_percent", "track.name is down_half_percent, there level"),
+        ):
             name = "changed_" + change.partition("=")[0].partition("[")[0]
-            page = self.page(simulated(name, "emergency", "--model", "ltd", "--set", change, "--set",
-                                       "exchange_interval_s=0.001"))
+            page = self.page(
+                simulated(name, "emergency", "--model", "ltd", "--set", change, "--set", "exchange_interval_s=0.001")
+            )
             self.assertIn(f"Not compared with the paper&#39;s emergency: {reason}.", page.text)
             self.assertNotIn("table_1", page.figures)
             self.assertNotIn("Circles", page.caption("speeds"))
@@ -365,12 +474,17 @@ class ReportTest(unittest.TestCase):
         self.assert_speed(250.0, wave.application(emergency))
         self.assertEqual(250.0, wave.configured_speed_mps(emergency, False))
         self.assertEqual([1, 122, 242], [vehicle for vehicle, _ in wave.application(emergency).sources()])
-        minimum = Run(simulated("minimum", "minimum", "--model", "ltd", "--set", "commands[1].time_s=20", "--set",
-                                "duration_s=35"), None)
+        minimum = Run(
+            simulated(
+                "minimum", "minimum", "--model", "ltd", "--set", "commands[1].time_s=20", "--set", "duration_s=35"
+            ),
+            None,
+        )
         self.assert_speed(150.0, wave.application(minimum))
         self.assert_speed(180.0, wave.release(minimum))
-        self.assertEqual((150.0, 180.0), (wave.configured_speed_mps(minimum, False),
-                                          wave.configured_speed_mps(minimum, True)))
+        self.assertEqual(
+            (150.0, 180.0), (wave.configured_speed_mps(minimum, False), wave.configured_speed_mps(minimum, True))
+        )
 
     def test_wave_speed_of_pressures_made_up(self):
         """Straight rises that begin at known times: the fit is then exact, but for the rounding of the pressures."""
@@ -394,6 +508,7 @@ class ReportTest(unittest.TestCase):
                 old = getattr(run.recording, table)
                 setattr(run.recording, table, old.at(old.time_s > at_s))
             return run
+
         with self.assertRaisesRegex(figure.LeftOut, "242 of 242 vehicles had begun to move before the recording"):
             wave.application(begun(8.5))
         part = wave.application(begun(3.0))  # under way: what is still to come has the same speed
@@ -406,7 +521,9 @@ class ReportTest(unittest.TestCase):
     def test_air_brake(self):
         parted = simulated("parted", "hose_parted", "--set", "duration_s=14")
         page = self.page(parted)
-        self.assertLessEqual({"pressure_picture", "pipe_pressure_picture", "air_brake", "brake_wave"}, set(page.figures))
+        self.assertLessEqual(
+            {"pressure_picture", "pipe_pressure_picture", "air_brake", "brake_wave"}, set(page.figures)
+        )
         self.assertNotIn("Charging", page.caption("air_brake"))
         found = wave.application(Run(parted, None))
         # A drop of 20 kPa travels at 268.1 m/s at most in a pipe that is 1.1 times as long as the train; vents of 6.35 mm and
@@ -417,12 +534,21 @@ class ReportTest(unittest.TestCase):
         charging = simulated("charging", "charging", "--set", "train.consist[1].count=9", "--set", "duration_s=200")
         table = train_brake.load(str(charging))["brake_pressures"]
         first, *_, last = table["pipe_pressure_pa"].T
-        self.assertIn(f"after {table.time_s[last >= 0.95 * first.max()][0]:.1f} s", self.page(charging).caption("air_brake"))
+        self.assertIn(
+            f"after {table.time_s[last >= 0.95 * first.max()][0]:.1f} s", self.page(charging).caption("air_brake")
+        )
 
     def test_wheel_slides(self):
-        run = simulated("slide", "single_wagon_stop", "--set", "duration_s=50", "--set",
-                        "train.consist[0].vehicle.brake_rigging.shoe_load_per_pressure_n_per_pa=0.8", "--set",
-                        "track={name: patch, friction_patches: [{from_m: 550, to_m: 580, friction_coefficient: 0.05}]}")
+        run = simulated(
+            "slide",
+            "single_wagon_stop",
+            "--set",
+            "duration_s=50",
+            "--set",
+            "train.consist[0].vehicle.brake_rigging.shoe_load_per_pressure_n_per_pa=0.8",
+            "--set",
+            "track={name: patch, friction_patches: [{from_m: 550, to_m: 580, friction_coefficient: 0.05}]}",
+        )
         found = slides.find_slides(Run(run, None).recording.state)
         # docs/validation.md: wheels of this run are locked from 38.18 to 40.19 s; before, they slow down on the patch.
         self.assertEqual(1, len(found))
@@ -432,28 +558,44 @@ class ReportTest(unittest.TestCase):
         self.assertIn("1 on 1 vehicle(s), 1 of them with a locked wheel", self.page(run).caption("slip_picture"))
 
     def test_a_standing_train_does_not_slide(self):
-        standing = Table({"creepage": numpy.full((3, 1), 0.9), "speed_mps": numpy.array([[0.4], [5.0], [0.01]])},
-                         numpy.array([1.0, 2.0, 3.0]))
+        standing = Table(
+            {"creepage": numpy.full((3, 1), 0.9), "speed_mps": numpy.array([[0.4], [5.0], [0.01]])},
+            numpy.array([1.0, 2.0, 3.0]),
+        )
         self.assertEqual([(2.0, 2.0)], [(s.begin_s, s.end_s) for s in slides.find_slides(standing)])
 
     def test_the_dip(self):
         page = self.page(simulated("dip", "dip"))
         caption = page.caption("dip")
         self.assertIn("±15.10", caption)  # H sin(2 pi l / L) / (2 l), docs/validation.md
-        low, high = map(float, re.search(r"pitches by (-[\d.]+) \.\.\. \+([\d.]+) mrad",
-                                         caption.replace("\u2212", "-")).groups())
+        low, high = map(
+            float, re.search(r"pitches by (-[\d.]+) \.\.\. \+([\d.]+) mrad", caption.replace("\u2212", "-")).groups()
+        )
         self.assertAlmostEqual(15.10, -low, delta=0.2)
         self.assertAlmostEqual(15.10, high, delta=0.2)
         for title in ("Largest coupler forces along the train", "Brake wave", "Acceleration, whole train"):
             self.assertIn(title, page.left_out)
 
     def test_over_the_distance(self):
-        run = simulated("hills", "../../test/short_train", "--model", "ltd", "--set", "duration_s=90", "--set",
-                        "record_interval_s=0.1", "--set", "ledger_interval_s=1", "--set", "detail_vehicles=[]", "--set",
-                        "track={name: hills, heights: [{position_m: -100, height_m: 500}, {position_m: 100, height_m: 501}, "
-                        "{position_m: 300, height_m: 498}], curves: [{from_m: 50, to_m: 150, radius_m: -400}], "
-                        "speed_limits: [{from_m: -1000, limit_kmh: 90}, {from_m: 120, limit_kmh: 60}], "
-                        "stations: [{name: Halt & Ford, position_m: 200}]}")
+        run = simulated(
+            "hills",
+            "../../test/short_train",
+            "--model",
+            "ltd",
+            "--set",
+            "duration_s=90",
+            "--set",
+            "record_interval_s=0.1",
+            "--set",
+            "ledger_interval_s=1",
+            "--set",
+            "detail_vehicles=[]",
+            "--set",
+            "track={name: hills, heights: [{position_m: -100, height_m: 500}, {position_m: 100, height_m: 501}, "
+            "{position_m: 300, height_m: 498}], curves: [{from_m: 50, to_m: 150, radius_m: -400}], "
+            "speed_limits: [{from_m: -1000, limit_kmh: 90}, {from_m: 120, limit_kmh: 60}], "
+            "stations: [{name: Halt & Ford, position_m: 200}]}",
+        )
         page = self.page(run)
         self.assertIn("over_the_distance", page.figures)
         self.assertIn("Halt &amp; Ford", page.text)
@@ -472,30 +614,53 @@ class ReportTest(unittest.TestCase):
         self.assertIn(f"{way[1] - way[0]:.1f} m from the first pressure", page.text)
 
     def test_a_route_by_points_is_that_by_lists(self):
-        lists = Track({"grades": [{"from_m": 0, "grade_percent": 1}, {"from_m": 500, "grade_percent": -0.5}],
-                       "curves": [{"from_m": 250, "to_m": 500, "radius_m": -400}],
-                       "speed_limits": [{"from_m": 0, "limit_kmh": 80}, {"from_m": 750, "limit_kmh": 50}]})
-        points = Track({"points": [
-            {"position_m": 0, "grade_permille": 10, "radius_m": 0, "speed_limit_kmh": 80},
-            {"position_m": 250, "radius_m": -400}, {"position_km": 0.5, "grade_percent": -0.5, "radius_m": 0},
-            {"position_m": 750, "speed_limit_kmh": 50, "station": "Zell"}]})
+        lists = Track(
+            {
+                "grades": [{"from_m": 0, "grade_percent": 1}, {"from_m": 500, "grade_percent": -0.5}],
+                "curves": [{"from_m": 250, "to_m": 500, "radius_m": -400}],
+                "speed_limits": [{"from_m": 0, "limit_kmh": 80}, {"from_m": 750, "limit_kmh": 50}],
+            }
+        )
+        points = Track(
+            {
+                "points": [
+                    {"position_m": 0, "grade_permille": 10, "radius_m": 0, "speed_limit_kmh": 80},
+                    {"position_m": 250, "radius_m": -400},
+                    {"position_km": 0.5, "grade_percent": -0.5, "radius_m": 0},
+                    {"position_m": 750, "speed_limit_kmh": 50, "station": "Zell"},
+                ]
+            }
+        )
         at = numpy.arange(-300.0, 1200.0, 12.5)
-        for one, other in ((lists.grades, points.grades), (lists.curvatures, points.curvatures), (lists.limits, points.limits)):
+        for one, other in (
+            (lists.grades, points.grades),
+            (lists.curvatures, points.curvatures),
+            (lists.limits, points.limits),
+        ):
             numpy.testing.assert_allclose(one.at(at), other.at(at), rtol=1e-14)
         for track in (lists, points):
             place, height = track.heights(-100.0, 1000.0)
             expected = numpy.interp([-100, 0, 500, 1000], place, height) - height[0]
             numpy.testing.assert_allclose(expected, [0, 1, 6, 3.5], atol=1e-12)
-        numpy.testing.assert_array_equal(points.limits.lowest(numpy.array([0.0, 700.0, 800.0]), numpy.array([700.0, 760.0, 900.0])),
-                                         [80, 50, 50])
+        numpy.testing.assert_array_equal(
+            points.limits.lowest(numpy.array([0.0, 700.0, 800.0]), numpy.array([700.0, 760.0, 900.0])), [80, 50, 50]
+        )
         heights = Track({"heights": [{"position_m": 0, "height_m": 7}, {"position_m": 100, "height_m": 9}]})
-        numpy.testing.assert_allclose(heights.grades.at(numpy.array([-1.5, -0.5, 0.0, 99.0, 100.0])), [0, 0, 0.02, 0.02, 0])
+        numpy.testing.assert_allclose(
+            heights.grades.at(numpy.array([-1.5, -0.5, 0.0, 99.0, 100.0])), [0, 0, 0.02, 0.02, 0]
+        )
         place, height = heights.heights(50.0, 200.0)
         numpy.testing.assert_allclose([height[0], height[-1]], [8, 9])
 
     def test_masses_are_those_of_all_wheelsets_and_of_the_load(self):
-        six_axles = {"carbody": {"mass_kg": 100.0}, "bolster": {"mass_kg": 10.0}, "wedge_mass_kg": 0.0,
-                     "bogie_frame": {"mass_kg": 20.0}, "wheelset": {"mass_kg": 3.0}, "wheelsets_per_bogie": 3}
+        six_axles = {
+            "carbody": {"mass_kg": 100.0},
+            "bolster": {"mass_kg": 10.0},
+            "wedge_mass_kg": 0.0,
+            "bogie_frame": {"mass_kg": 20.0},
+            "wheelset": {"mass_kg": 3.0},
+            "wheelsets_per_bogie": 3,
+        }
         self.assertEqual(100 + 2 * 10 + 2 * 20 + 6 * 3, consist.mass_kg(six_axles))
 
     def test_a_vehicle_without_a_run(self):
@@ -514,8 +679,11 @@ class ReportTest(unittest.TestCase):
             port = free.getsockname()[1]
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost"}
         with contextlib.ExitStack() as stack:
+
             def start(*arguments):
-                process = subprocess.Popen(arguments, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                process = subprocess.Popen(
+                    arguments, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+                )
                 stack.callback(process.wait, 60)
                 stack.callback(process.send_signal, signal.SIGINT)
                 return process
@@ -527,16 +695,26 @@ class ReportTest(unittest.TestCase):
                     time.sleep(0.1)
 
             def ask(*arguments):
-                return subprocess.run(arguments, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                      text=True).stdout
+                return subprocess.run(
+                    arguments, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+                ).stdout
 
             start("roscore", "-p", str(port))
             until(lambda: "/rosout" in ask("rosnode", "list"))
             beside = self.here / "beside.bag"
             start("rosbag", "record", "-q", "-a", "-O", str(beside), "__name:=beside")
-            launch = start("roslaunch", "train_brake", "train.launch", f"scenario:={HERE}/short_train.yaml", "vehicles:=6",
-                           f"out:={self.here}/run", "nodes:=2", "start_paused:=true", "real_time_factor:=1",
-                           "set:=duration_s=2")
+            launch = start(
+                "roslaunch",
+                "train_brake",
+                "train.launch",
+                f"scenario:={HERE}/short_train.yaml",
+                "vehicles:=6",
+                f"out:={self.here}/run",
+                "nodes:=2",
+                "start_paused:=true",
+                "real_time_factor:=1",
+                "set:=duration_s=2",
+            )
             until(lambda: "/beside" in ask("rostopic", "info", "/train/state"))
             time.sleep(1.0)  # for the connection itself
             until(lambda: "True" in ask("rosservice", "call", "/train/master/resume"))
@@ -552,12 +730,23 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(2.0, float(recorded["simulated_s"]))
         self.assertEqual(2, page.text.count("<dd>yes</dd>"))
         self.assertIn("+0.0000 km/h at the last common instant", page.caption("speeds"))
-        self.assertEqual({"Over the distance", "Brake pipe, whole train", "Air in the brake", "Wheels that slide",
-                          "A wagon over the dip"}, set(page.left_out))
+        self.assertEqual(
+            {
+                "Over the distance",
+                "Brake pipe, whole train",
+                "Air in the brake",
+                "Wheels that slide",
+                "A wagon over the dip",
+            },
+            set(page.left_out),
+        )
 
     def test_another_namespace(self):
-        bag = rewritten(six_wagons() / "train.bag", self.here / "moved.bag",
-                        lambda topic, raw, stamp: (topic.replace("/train/", "/line_7/freight/"), raw, stamp))
+        bag = rewritten(
+            six_wagons() / "train.bag",
+            self.here / "moved.bag",
+            lambda topic, raw, stamp: (topic.replace("/train/", "/line_7/freight/"), raw, stamp),
+        )
         recording, expected = Run(bag, 4).recording, Run(six_wagons(), 4).recording
         for table in ("state", "forces", "pressures", "wagon"):
             old, new = getattr(expected, table), getattr(recording, table)
@@ -569,8 +758,11 @@ class ReportTest(unittest.TestCase):
     # Bags that lack something
 
     def test_a_bag_that_lacks_topics(self):
-        bag = rewritten(six_wagons() / "train.bag", self.here / "part.bag",
-                        lambda topic, *rest: (topic, *rest) if topic == "/train/brake_pressures" else None)
+        bag = rewritten(
+            six_wagons() / "train.bag",
+            self.here / "part.bag",
+            lambda topic, *rest: (topic, *rest) if topic == "/train/brake_pressures" else None,
+        )
         page = self.page(bag)
         self.assertEqual(["pressures", "pressure_picture"], list(page.figures))
         self.assertEqual("The recording has no topic of the type train_brake_msgs/TrainState.", page.left_out["Speed"])
@@ -578,12 +770,17 @@ class ReportTest(unittest.TestCase):
         self.assertIn("EnergyLedger", page.left_out["Energy ledger"])
         self.assertIn("no TrainState", page.left_out["Brake wave"])
         beside_a_whole_one = self.page(six_wagons(), bag)
-        self.assertIn("Not shown: LTD: the recording has no topic of the type train_brake_msgs/TrainState.",
-                      beside_a_whole_one.caption("speeds"))
+        self.assertIn(
+            "Not shown: LTD: the recording has no topic of the type train_brake_msgs/TrainState.",
+            beside_a_whole_one.caption("speeds"),
+        )
 
     def test_a_run_of_one_record(self):
-        bag = rewritten(six_wagons() / "train.bag", self.here / "first.bag",
-                        lambda topic, raw, stamp: (topic, raw, stamp) if stamp.to_sec() < 0.001 else None)
+        bag = rewritten(
+            six_wagons() / "train.bag",
+            self.here / "first.bag",
+            lambda topic, raw, stamp: (topic, raw, stamp) if stamp.to_sec() < 0.001 else None,
+        )
         self.assertIn("Energy ledger", self.page(bag).left_out)
 
     def test_a_vehicle_or_coupler_that_is_not_there(self):
@@ -596,10 +793,25 @@ class ReportTest(unittest.TestCase):
 
     def test_an_interrupted_run_is_marked(self):
         out = self.here / "run"
-        process = subprocess.Popen(["rosrun", "train_sim", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(out),
-                                    "--set", "duration_s=1e4", "--set", "record_interval_s=0.1", "--set",
-                                    "ledger_interval_s=1"],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            [
+                "rosrun",
+                "train_sim",
+                "train_sim",
+                "run",
+                str(HERE / "short_train.yaml"),
+                "--out",
+                str(out),
+                "--set",
+                "duration_s=1e4",
+                "--set",
+                "record_interval_s=0.1",
+                "--set",
+                "ledger_interval_s=1",
+            ],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         while not (out / "train.bag.active").exists():
             self.assertIsNone(process.poll())
             time.sleep(0.05)
@@ -607,7 +819,9 @@ class ReportTest(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertEqual(130, process.wait(60))
         page = self.page(out)
-        self.assertRegex(page.text, r"INCOMPLETE: the run ended at [\d.]+ s of 10000 s, stopped by its user or cut off\.")
+        self.assertRegex(
+            page.text, r"INCOMPLETE: the run ended at [\d.]+ s of 10000 s, stopped by its user or cut off\."
+        )
         self.assertIn("<dd>no</dd>", page.text)
         # The process died instead: no summary, and the bag under its working name.
         (out / "summary.json").unlink()
@@ -615,17 +829,26 @@ class ReportTest(unittest.TestCase):
         self.assertIn("INCOMPLETE", Run(out, None).notes[-1])
 
     def test_missing_records_are_counted(self):
-        bag = rewritten(six_wagons() / "train.bag", self.here / "gap.bag",
-                        lambda topic, raw, stamp: None if 0.055 < stamp.to_sec() < 0.085 else (topic, raw, stamp))
+        bag = rewritten(
+            six_wagons() / "train.bag",
+            self.here / "gap.bag",
+            lambda topic, raw, stamp: None if 0.055 < stamp.to_sec() < 0.085 else (topic, raw, stamp),
+        )
         run = Run(bag, None)
-        self.assertEqual(["3 records are missing from the bag, the first after 0.05 s.",
-                          "INCOMPLETE: only a part of the run was recorded."], run.notes)
+        self.assertEqual(
+            [
+                "3 records are missing from the bag, the first after 0.05 s.",
+                "INCOMPLETE: only a part of the run was recorded.",
+            ],
+            run.notes,
+        )
         self.assertFalse(run.complete)
         self.assertIn("of the recorded part", {fact.more for fact in cards.facts_of(run) if fact.name == "distance"})
 
     def test_a_bag_begun_late_is_a_part(self):
         def late(topic, raw, stamp):
             return (topic, raw, stamp) if stamp.to_sec() > 4.0 or "scenario" in topic else None
+
         run = Run(rewritten(two_d() / "train.bag", self.here / "late.bag", late), None)
         self.assertFalse(run.complete)
         self.assertIn("INCOMPLETE: only a part of the run was recorded.", run.notes)
@@ -641,8 +864,11 @@ class ReportTest(unittest.TestCase):
         self.assertTrue((known == ((middle_s < 2.0) | (middle_s > 7.98))).all())
         numpy.testing.assert_allclose(picture[0, known], middle_s[known], atol=0.06)  # half a column and an interval
         numpy.testing.assert_array_equal(-picture[0, known], picture[1, known])
-        bag = rewritten(two_d() / "train.bag", self.here / "gap.bag",
-                        lambda topic, raw, stamp: None if 3.0 < stamp.to_sec() < 6.0 else (topic, raw, stamp))
+        bag = rewritten(
+            two_d() / "train.bag",
+            self.here / "gap.bag",
+            lambda topic, raw, stamp: None if 3.0 < stamp.to_sec() < 6.0 else (topic, raw, stamp),
+        )
         self.assertIn("Grey: no records.", self.page(bag).caption("acceleration_picture"))
         self.assertNotIn("Grey", self.page(two_d()).caption("acceleration_picture"))
 
@@ -659,11 +885,11 @@ class ReportTest(unittest.TestCase):
     def test_damaged_bags(self):
         whole = (six_wagons() / "train.bag").read_bytes()
         cut = self.here / "cut.bag"
-        cut.write_bytes(whole[:len(whole) // 2])
+        cut.write_bytes(whole[: len(whole) // 2])
         self.assert_refused(cut, f"{cut} is damaged or was not closed", f"rosbag reindex {cut}")
         broken = self.here / "broken.bag"
         half = len(whole) // 2
-        broken.write_bytes(whole[:half] + b"\xff" * 3000 + whole[half + 3000:])
+        broken.write_bytes(whole[:half] + b"\xff" * 3000 + whole[half + 3000 :])
         self.assert_refused(broken, f"{broken} is damaged", f"rosbag reindex {broken}")
         empty = self.here / "empty.bag"
         empty.touch()
@@ -687,21 +913,27 @@ class ReportTest(unittest.TestCase):
                             header = {**header, "message_definition": evil, "md5sum": md5sum or header["md5sum"]}
                             raw = (raw[0], raw[1], header["md5sum"], *raw[3:])
                         new.write(name, raw, stamp, raw=True, connection_header=header)
-                self.assert_refused(bag, "defines", kind if topic != "/x" else "train_brake_msgs/", "the version that wrote")
+                self.assert_refused(
+                    bag, "defines", kind if topic != "/x" else "train_brake_msgs/", "the version that wrote"
+                )
                 self.assertFalse(sign.exists())
 
     def test_a_zero_has_no_minus(self):
-        self.assertEqual(["0.000", "\u22120.001", "+0.0", "\u22122.5e\u221210", "0.0 kN"],
-                         list(map(figure.minus, ["-0.000", "-0.001", "+0.0", "-2.5e-10", "-0.0 kN"])))
+        self.assertEqual(
+            ["0.000", "\u22120.001", "+0.0", "\u22122.5e\u221210", "0.0 kN"],
+            list(map(figure.minus, ["-0.000", "-0.001", "+0.0", "-2.5e-10", "-0.0 kN"])),
+        )
 
     def test_our_own_errors_are_not_called_damage(self):
-        with mock.patch.object(bag_reader.BagFile, "_table", side_effect=ZeroDivisionError), self.assertRaises(ZeroDivisionError):
+        with mock.patch.object(bag_reader.BagFile, "_table", side_effect=ZeroDivisionError), self.assertRaises(
+            ZeroDivisionError
+        ):
             Run(six_wagons(), None)
 
     def test_rosbag_reindex_is_a_remedy(self):
         whole = (two_d() / "train.bag").read_bytes()
         cut = self.here / "cut.bag"
-        cut.write_bytes(whole[:len(whole) // 2])
+        cut.write_bytes(whole[: len(whole) // 2])
         subprocess.run(["rosbag", "reindex", "-q", str(cut)], check=True, stdout=subprocess.DEVNULL)
         self.assertGreater(len(Run(cut, None).recording.state), 100)
 
@@ -741,14 +973,19 @@ class ReportTest(unittest.TestCase):
 
     def test_the_command(self):
         run = shutil.copytree(six_wagons(), self.here / "run")
-        done = subprocess.run(["rosrun", "train_brake", "report", str(run)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True)
+        done = subprocess.run(
+            ["rosrun", "train_brake", "report", str(run)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         self.assertEqual((0, ""), (done.returncode, done.stderr))
         self.assertIn(f"wrote {run}/report.html", done.stdout)
         self.assertTrue((run / "report.html").exists())
         # The next run into the folder takes it away: it would show another run.
-        subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(run)], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            ["rosrun", "train_sim", "train_sim", "run", str(HERE / "short_train.yaml"), "--out", str(run)],
+            check=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         self.assertFalse((run / "report.html").exists())
 
     # In a browser
@@ -757,12 +994,27 @@ class ReportTest(unittest.TestCase):
         """(the page after its scripts, what it wrote to the console) in headless Chromium."""
         page = self.here / "browse.html"
         page.write_text(page_text)
-        done = subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-                               f"--user-data-dir={self.here}/chromium", "--virtual-time-budget=5000", "--dump-dom",
-                               f"file://{page}"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
+        done = subprocess.run(
+            [
+                "chromium",
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--enable-logging=stderr",
+                f"--user-data-dir={self.here}/chromium",
+                "--virtual-time-budget=5000",
+                "--dump-dom",
+                f"file://{page}",
+            ],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120,
+        )
         # What the browser's own pages (chrome://) say of the network is not of ours.
-        return done.stdout, [line for line in done.stderr.splitlines()
-                             if ":CONSOLE" in line and "source: chrome://" not in line]
+        return done.stdout, [
+            line for line in done.stderr.splitlines() if ":CONSOLE" in line and "source: chrome://" not in line
+        ]
 
     def test_the_page_in_a_browser(self):
         """No error, and no request: the page's content security policy makes an error of each."""

@@ -23,14 +23,26 @@ class SeveralLaunches(LaunchTest):
         folder.mkdir()
         environment = dict(self.master.environment, **({"ROS_NAMESPACE": namespace} if namespace else {}))
         proxy = type("Master", (), {"environment": environment})
-        return Launch(proxy, folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6", *arguments,
-                      **options)
+        return Launch(
+            proxy,
+            folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={SHORT_TRAIN}",
+            "vehicles:=6",
+            *arguments,
+            **options,
+        )
 
     def node(self, *arguments):
         """ltd_master by hand, to its end. @return exit code and log"""
-        done = subprocess.run(["rosrun", "ltd_master", "ltd_master", "__ns:=/train", "__name:=master", *arguments],
-                              env=self.master.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              timeout=60)
+        done = subprocess.run(
+            ["rosrun", "ltd_master", "ltd_master", "__ns:=/train", "__name:=master", *arguments],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=60,
+        )
         return done.returncode, done.stdout
 
     def call(self, service, *arguments):
@@ -53,7 +65,12 @@ class SeveralLaunches(LaunchTest):
         first.saw(r" 1\.\d+ of 6 s", SOON)
         second = self.launch("second", "nodes:=3")  # one of its wagon nodes has the name of one of the first's
         self.assertEqual(2, second.ended())
-        for text in ("/train/master runs already", f"{SHORT_TRAIN}, since 20", "ROS_NAMESPACE=", "/train/wagon_001 runs already"):
+        for text in (
+            "/train/master runs already",
+            f"{SHORT_TRAIN}, since 20",
+            "ROS_NAMESPACE=",
+            "/train/wagon_001 runs already",
+        ):
             self.assertIn(text, second.log())
         self.assertFalse(second.out.exists())
         self.assertLess(second.log().count("process[train/wagon_001"), 2, "it is started again and again")
@@ -75,7 +92,9 @@ class SeveralLaunches(LaunchTest):
     def test_two_trains_have_a_clock_each(self):
         arguments = ("set:=duration_s=4", "real_time_factor:=1", "nodes:=1", "start_paused:=true")
         plain = self.launch("plain", *arguments)
-        self.wait_for_service("/train/master/resume")  # roslaunch ends of two that make the run_id of a ROS master at once
+        self.wait_for_service(
+            "/train/master/resume"
+        )  # roslaunch ends of two that make the run_id of a ROS master at once
         north = self.launch("north", *arguments, namespace="north")
         self.wait_for_service("/north/train/master/resume")
         self.assertEqual({"/train/master"}, self.publishers("/clock"))
@@ -84,7 +103,9 @@ class SeveralLaunches(LaunchTest):
         self.assertIs(True, self.get_parameter("/use_sim_time"))
         self.assertIs(True, self.get_parameter("/north/train/use_sim_time"))
         self.assertIn("success: True", self.call("/train/master/step", "50"))
-        self.assertRegex(self.tool("rostopic", "echo", "-n1", "/north/train/clock"), r"nsecs: +1\n")  # 0 is "no time yet"
+        self.assertRegex(
+            self.tool("rostopic", "echo", "-n1", "/north/train/clock"), r"nsecs: +1\n"
+        )  # 0 is "no time yet"
         self.assertRegex(self.tool("rostopic", "echo", "-n1", "/clock"), r"nsecs: +100000000\n")
         third = self.launch("third", "global_clock:=true", "nodes:=1", namespace="south")
         self.assertEqual(2, third.ended())
@@ -102,8 +123,10 @@ class SeveralLaunches(LaunchTest):
         time.sleep(0.5)
         for topic in ("/train/live/state", "/train/live/status", "/train/state"):
             self.assertIn("35", self.tool("rostopic", "echo", "-n1", topic + "/exchange"), topic)
-        late = ("import rospy, time; rospy.init_node('late'); time.sleep(1); "
-                "rospy.loginfo('at %.3f', rospy.Time.now().to_sec())")
+        late = (
+            "import rospy, time; rospy.init_node('late'); time.sleep(1); "
+            "rospy.loginfo('at %.3f', rospy.Time.now().to_sec())"
+        )
         self.assertIn("at 0.070", self.tool("/usr/bin/python3", "-c", late))
         self.call("/train/master/resume")
         self.assertEqual(0, launch.ended(), launch.log())
@@ -112,8 +135,12 @@ class SeveralLaunches(LaunchTest):
         launch = self.launch("run", "nodes:=1", "start_paused:=true", "set:=duration_s=3")
         self.wait_for_service("/train/master/resume")
         bag = self.folder / "beside.bag"
-        recorder = subprocess.Popen(["rosbag", "record", "-q", "--buffsize=0", "-O", str(bag), "/train/state", "__name:=beside"],
-                                    env=self.master.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        recorder = subprocess.Popen(
+            ["rosbag", "record", "-q", "--buffsize=0", "-O", str(bag), "/train/state", "__name:=beside"],
+            env=self.master.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         self.assertTrue(wait_until(lambda: pathlib.Path(f"{bag}.active").exists(), SOON))
         self.call("/train/master/set_real_time_factor", "1")
         self.call("/train/master/resume")
@@ -130,30 +157,54 @@ class SeveralLaunches(LaunchTest):
     def test_a_pause_ends_a_long_step(self):
         launch = self.launch("run", "nodes:=1", "start_paused:=true", "real_time_factor:=1", "set:=duration_s=30")
         self.wait_for_service("/train/master/step")
-        step = subprocess.Popen(["rosservice", "call", "/train/master/step", "10000"], env=self.master.environment,
-                                stdout=subprocess.PIPE, text=True)
+        step = subprocess.Popen(
+            ["rosservice", "call", "/train/master/step", "10000"],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         time.sleep(2)
         stands = re.search(r"paused at (\d+\.\d+) s", self.call("/train/master/pause"))
         self.assertTrue(stands)
-        self.assertRegex(step.communicate(timeout=20)[0], r"success: False\s+message: .paused after \d+ of 10000 exchanges")
+        self.assertRegex(
+            step.communicate(timeout=20)[0], r"success: False\s+message: .paused after \d+ of 10000 exchanges"
+        )
         time.sleep(1)
         self.assertIn(f"was paused already, at {stands[1]} s", self.call("/train/master/pause"))
         launch.interrupt()
         self.assertEqual(130, launch.ended())
 
     def test_parameters_are_as_strict_as_files(self):
-        code, log = self.node(f"_scenario:={SHORT_TRAIN}", "_record:=no", "_real_time_factor:=fast", "_out:=5", "_realtime_factor:=2")
+        code, log = self.node(
+            f"_scenario:={SHORT_TRAIN}", "_record:=no", "_real_time_factor:=fast", "_out:=5", "_realtime_factor:=2"
+        )
         self.assertEqual(2, code, log)
-        for text in ("record must be true or false, got the text 'no'", "real_time_factor must be a plain number",
-                     "out must be text, got 5", "realtime_factor is not known; did you mean real_time_factor?"):
+        for text in (
+            "record must be true or false, got the text 'no'",
+            "real_time_factor must be a plain number",
+            "out must be text, got 5",
+            "realtime_factor is not known; did you mean real_time_factor?",
+        ):
             self.assertIn(text, log)
-        done = subprocess.run(["rosrun", "wagon_node", "wagon_node", "_threads:=two", "_thread:=2"], env=self.master.environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=30)
+        done = subprocess.run(
+            ["rosrun", "wagon_node", "wagon_node", "_threads:=two", "_thread:=2"],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=30,
+        )
         self.assertEqual(2, done.returncode)
         self.assertIn("threads must be an integer, got the text 'two'", done.stdout)
         self.assertIn("thread is not known; did you mean threads?", done.stdout)
-        done = subprocess.run(["rosrun", "train_brake_rviz", "train_view", "_live:=perhaps"], env=self.master.environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=30)
+        done = subprocess.run(
+            ["rosrun", "train_brake_rviz", "train_view", "_live:=perhaps"],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=30,
+        )
         self.assertEqual(2, done.returncode)
         self.assertIn("live must be true or false, got the text 'perhaps'", done.stdout)
 
@@ -176,9 +227,24 @@ class SeveralLaunches(LaunchTest):
         config = SHORT_TRAIN.parent.parent / "config"
         environment = dict(self.master.environment, HOME=str(home), PWD=str(caller), TRAIN_BRAKE_CONFIG=str(config))
         for out, place in (("runs/one", caller / "runs" / "one"), ("~/two", home / "two")):
-            done = subprocess.run(["roslaunch", "train_brake", "train.launch", "scenario:=mine.yaml", "vehicles:=6", "nodes:=1",
-                                   f"out:={out}", "exit_status_file:=status"], cwd=caller, env=environment,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+            done = subprocess.run(
+                [
+                    "roslaunch",
+                    "train_brake",
+                    "train.launch",
+                    "scenario:=mine.yaml",
+                    "vehicles:=6",
+                    "nodes:=1",
+                    f"out:={out}",
+                    "exit_status_file:=status",
+                ],
+                cwd=caller,
+                env=environment,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                timeout=60,
+            )
             self.assertTrue((place / "summary.json").exists(), done.stdout)
             self.assertIn(f"results go to {place}", done.stdout)
             self.assertEqual("0\n", (caller / "status").read_text())
@@ -186,8 +252,15 @@ class SeveralLaunches(LaunchTest):
         self.assertFalse((caller / "~").exists())
 
     def run_command(self, *words, folder):
-        done = subprocess.run(["rosrun", "train_brake", "run", *words, "report:=false"], cwd=folder, env=self.master.environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+        done = subprocess.run(
+            ["rosrun", "train_brake", "run", *words, "report:=false"],
+            cwd=folder,
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=120,
+        )
         return done.returncode, done.stdout
 
     def test_run_finds_the_vehicles_and_returns_the_run_s_code_without_red_lines(self):
@@ -206,18 +279,23 @@ class SeveralLaunches(LaunchTest):
         self.assertEqual(0, branch[0], branch[1])
 
     def test_run_returns_2_for_what_it_cannot_use(self):
-        for words, told in ((["absent.yaml"], "does not exist"), ([], "SCENARIO is missing"),
-                            ([str(SHORT_TRAIN), "out", "nonsense:=1"], "nonsense"),
-                            ([str(SHORT_TRAIN), "out", "more"], "one too many"),
-                            ([str(SHORT_TRAIN), "out", "model:=3d"], "3d")):
+        for words, told in (
+            (["absent.yaml"], "does not exist"),
+            ([], "SCENARIO is missing"),
+            ([str(SHORT_TRAIN), "out", "nonsense:=1"], "nonsense"),
+            ([str(SHORT_TRAIN), "out", "more"], "one too many"),
+            ([str(SHORT_TRAIN), "out", "model:=3d"], "3d"),
+        ):
             code, log = self.run_command(*words, folder=self.folder)
             self.assertEqual(2, code, log)
             self.assertIn(told, log)
-        code, log = self.run_command(str(SHORT_TRAIN), "nodes:=2", "startup_timeout:=2", "vehicles:=5", folder=self.folder)
+        code, log = self.run_command(
+            str(SHORT_TRAIN), "nodes:=2", "startup_timeout:=2", "vehicles:=5", folder=self.folder
+        )
         self.assertEqual(2, code, log)  # the master counts for itself
 
     def test_set_carries_blanks_lists_and_maps(self):
-        settings = "set:=name=\"two words\" detail_vehicles=[1, 3] duration_s=0.1"
+        settings = 'set:=name="two words" detail_vehicles=[1, 3] duration_s=0.1'
         launch = self.launch("run", settings, "nodes:=1")
         self.assertEqual(0, launch.ended(), launch.log())
         config = (launch.out / "config.yaml").read_text()
@@ -232,8 +310,11 @@ class SeveralLaunches(LaunchTest):
         vehicle = ("modes", str(SHORT_TRAIN.parent.parent / "config" / "vehicles" / "ore_wagon.yaml"))
         for command in (scenario, vehicle):
             run = lambda setting, command=command: subprocess.run(
-                ["rosrun", "ltd_master", "train_sim", *command, "--set", setting], stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT, text=True)
+                ["rosrun", "ltd_master", "train_sim", *command, "--set", setting],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            )
             example = re.search(r"as in (\S+)", run("nonsense").stdout)
             self.assertTrue(example)
             done = run(example[1])
@@ -260,8 +341,12 @@ class SeveralLaunches(LaunchTest):
         own = self.folder / "own"
         (own / "scenarios").mkdir(parents=True)
         scenario = shutil.copy(shipped / "scenarios" / "dip.yaml", own / "scenarios")
-        check = lambda: subprocess.run(["rosrun", "ltd_master", "train_sim", "check", str(scenario)], stdout=subprocess.PIPE,
-                                       stderr=subprocess.STDOUT, text=True)
+        check = lambda: subprocess.run(
+            ["rosrun", "ltd_master", "train_sim", "check", str(scenario)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         done = check()
         self.assertEqual(0, done.returncode, done.stdout)
         self.assertNotIn("same name", done.stdout)

@@ -29,8 +29,10 @@ ALLOCATED_KIB, LOST_KIB_PER_ROUND = {"roscore": 2048}, {"roscore": 20}
 
 def measure(process):
     status = pathlib.Path(f"/proc/{process}/status").read_text()
-    found = {"threads": int(re.search(r"Threads:\s*(\d+)", status)[1]),
-             "descriptors": len(os.listdir(f"/proc/{process}/fd"))}
+    found = {
+        "threads": int(re.search(r"Threads:\s*(\d+)", status)[1]),
+        "descriptors": len(os.listdir(f"/proc/{process}/fd")),
+    }
     # A sanitizer keeps what is freed, and books of its own; it tells of leaks itself.
     if not re.search(r"lib[at]san\.so", pathlib.Path(f"/proc/{process}/maps").read_text()):
         found["memory KiB"] = int(re.search(r"RssAnon:\s*(\d+)", status)[1])
@@ -53,15 +55,27 @@ class Soak(unittest.TestCase):
             wagon = self.start("wagon_node", "wagon_node", name, "_master_timeout_s:=0")
             self.addCleanup(wagon.wait)
             self.addCleanup(wagon.kill)
-        self.assertTrue(wait_until(lambda: {"/stay/wagon_001/step", "/stay/wagon_004/step"} <= self.master.services(), 60))
+        self.assertTrue(
+            wait_until(lambda: {"/stay/wagon_001/step", "/stay/wagon_004/step"} <= self.master.services(), 60)
+        )
 
     def start(self, package, program, name, *parameters):
-        return subprocess.Popen(["rosrun", package, program, "__ns:=/stay", f"__name:={name}", *parameters],
-                                env=self.master.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return subprocess.Popen(
+            ["rosrun", package, program, "__ns:=/stay", f"__name:={name}", *parameters],
+            env=self.master.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
 
     def round(self, expected):
-        launch = Launch(self.master, self.folder, ("train_brake", "train.launch"), f"scenario:={SHORT_TRAIN}", "vehicles:=6",
-                        "nodes:=2")
+        launch = Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={SHORT_TRAIN}",
+            "vehicles:=6",
+            "nodes:=2",
+        )
         self.assertEqual(0, launch.ended(), launch.log())
         self.assertEqual(expected, launch.summary()["state_digest"])
         master = self.start("ltd_master", "ltd_master", "master", f"_scenario:={SHORT_TRAIN}", "_ranks:=2")
@@ -74,8 +88,13 @@ class Soak(unittest.TestCase):
         publishers, subscribers, services = graph.getSystemState()
         # roslaunch leaves its own address at every ROS master that it has not started itself.
         parameters = [name for name in graph.getParamNames() if not name.startswith("/roslaunch/uris/")]
-        found = {"parameters": len(parameters), "publishers": len(publishers), "subscribers": len(subscribers),
-                 "services": len(services), "temporary files": len(os.listdir(self.temporary))}
+        found = {
+            "parameters": len(parameters),
+            "publishers": len(publishers),
+            "subscribers": len(subscribers),
+            "services": len(services),
+            "temporary files": len(os.listdir(self.temporary)),
+        }
         for process, name in [*self.master.processes().items(), (self.master.process.pid, "roscore")]:
             found.update((f"{key} of {name}", value) for key, value in measure(process).items())
         return found

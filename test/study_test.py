@@ -57,16 +57,25 @@ class Values(unittest.TestCase):
         self.assertEqual(("a.b", ["1", "2.5", "x"]), study.grid_of("a.b=1, 2.5,x"))
         self.assertEqual(("a", ["40", "60", "80"]), study.grid_of("a=40:80:3"))
         self.assertEqual(("a", ["0.1", "0.2", "0.3"]), study.grid_of("a=0.1:0.3:3"))
-        self.assertEqual(("track", ["level", "{name: t, grades: [1, 2]}"]), study.grid_of("track=level,{name: t, grades: [1, 2]}"))
+        self.assertEqual(
+            ("track", ["level", "{name: t, grades: [1, 2]}"]), study.grid_of("track=level,{name: t, grades: [1, 2]}")
+        )
 
     def test_what_is_no_grid_is_refused_with_the_rule(self):
-        for text, rule in (("a", "path=value"), ("a=1:2:1", "COUNT must be >= 2"), ("a=x:2:3", "must be numbers"), ("a=1,,2", "is empty")):
+        for text, rule in (
+            ("a", "path=value"),
+            ("a=1:2:1", "COUNT must be >= 2"),
+            ("a=x:2:3", "must be numbers"),
+            ("a=1,,2", "is empty"),
+        ):
             with self.assertRaisesRegex(study.StudyError, rule):
                 study.grid_of(text)
 
     def test_draws_depend_on_the_seed_and_follow_their_law(self):
         def draws(law, seed):
-            return [float(x) for x in study.draws_of(f"a={law}", 4000, numpy.random.Generator(numpy.random.PCG64(seed)))[1]]
+            return [
+                float(x) for x in study.draws_of(f"a={law}", 4000, numpy.random.Generator(numpy.random.PCG64(seed)))[1]
+            ]
 
         self.assertEqual(draws("uniform(2,4)", 1), draws("uniform(2,4)", 1))
         self.assertNotEqual(draws("uniform(2,4)", 1), draws("uniform(2,4)", 2))
@@ -77,8 +86,12 @@ class Values(unittest.TestCase):
         self.assertAlmostEqual(0.0, numpy.mean(numpy.log(draws("lognormal(1,0.5)", 3))), delta=5 * 0.5 / 4000**0.5)
 
     def test_laws_that_are_none_are_refused(self):
-        for law, rule in (("gauss(1,2)", "must be uniform"), ("uniform(3,2)", "HIGH is below LOW"), ("normal(1)", "two numbers"),
-                          ("lognormal(0,1)", "median > 0")):
+        for law, rule in (
+            ("gauss(1,2)", "must be uniform"),
+            ("uniform(3,2)", "HIGH is below LOW"),
+            ("normal(1)", "two numbers"),
+            ("lognormal(0,1)", "median > 0"),
+        ):
             with self.assertRaisesRegex(study.StudyError, rule):
                 study.draws_of(f"a={law}", 2, numpy.random.default_rng(1))
 
@@ -98,13 +111,25 @@ class InAFolder(unittest.TestCase):
         self.out = self.here / "study"
 
     def sweep(self, *words):
-        return subprocess.run(["rosrun", "train_brake", "sweep", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True, check=False)
+        return subprocess.run(
+            ["rosrun", "train_brake", "sweep", *map(str, words)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
 
 
 class Sweep(InAFolder):
     def test_nine_runs_obey_their_law(self):
-        done = self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18:54:3", "--grid", "track.grades[0].grade_percent=-2,-1,0")
+        done = self.sweep(
+            self.scenario,
+            self.out,
+            "--grid",
+            "initial_speed_kmh=18:54:3",
+            "--grid",
+            "track.grades[0].grade_percent=-2,-1,0",
+        )
         self.assertEqual(0, done.returncode, done.stderr)
         rows = table(self.out / "results.csv")
         self.assertEqual(9, len(rows))
@@ -130,7 +155,9 @@ class Sweep(InAFolder):
         self.assertEqual(kept, (self.out / "runs/0001/summary.json").stat().st_mtime_ns)
 
     def test_another_study_in_the_folder_is_refused(self):
-        self.assertEqual(0, self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18,36", "--plan-only").returncode)
+        self.assertEqual(
+            0, self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18,36", "--plan-only").returncode
+        )
         again = self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18,37")
         self.assertEqual(2, again.returncode)
         self.assertIn("holds another study", again.stderr)
@@ -142,8 +169,20 @@ class Sweep(InAFolder):
         self.assertFalse(self.out.exists())
 
     def test_draws_are_the_same_at_every_point_and_percentiles_are_of_them(self):
-        done = self.sweep(self.scenario, self.out, "--random", "initial_speed_kmh=uniform(30,40)", "--draws", 5, "--seed", 7,
-                          "--grid", "duration_s=1,2", "--set", "track=level")
+        done = self.sweep(
+            self.scenario,
+            self.out,
+            "--random",
+            "initial_speed_kmh=uniform(30,40)",
+            "--draws",
+            5,
+            "--seed",
+            7,
+            "--grid",
+            "duration_s=1,2",
+            "--set",
+            "track=level",
+        )
         self.assertEqual(0, done.returncode, done.stderr)
         rows = table(self.out / "results.csv")
         speeds = {t: [float(row["initial_speed_kmh"]) for row in rows if row["duration_s"] == t] for t in "12"}
@@ -157,8 +196,24 @@ class Sweep(InAFolder):
 
     def test_ctrl_c_ends_the_runs_and_what_is_done_is_kept(self):
         (self.here / "cases.csv").write_text("duration_s\n1\n900000\n900000\n")
-        process = subprocess.Popen(["rosrun", "train_brake", "sweep", str(self.scenario), str(self.out), "--list",
-                                    str(self.here / "cases.csv"), "--jobs", "2", "--set", "track=level"], start_new_session=True, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [
+                "rosrun",
+                "train_brake",
+                "sweep",
+                str(self.scenario),
+                str(self.out),
+                "--list",
+                str(self.here / "cases.csv"),
+                "--jobs",
+                "2",
+                "--set",
+                "track=level",
+            ],
+            start_new_session=True,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         deadline = time.monotonic() + 60
         while not list(self.out.glob("runs/0003/log")) and time.monotonic() < deadline:
             time.sleep(0.05)
@@ -185,10 +240,22 @@ class Sweep(InAFolder):
         self.assertEqual((36, "level"), (second["initial_speed_kmh"], second["track"]["name"]))
 
     def test_gnu_parallel_runs_the_jobs_and_collect_finds_them(self):
-        self.assertEqual(0, self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18,36,54", "--plan-only").returncode)
+        self.assertEqual(
+            0, self.sweep(self.scenario, self.out, "--grid", "initial_speed_kmh=18,36,54", "--plan-only").returncode
+        )
         subprocess.run(
-            ["parallel", "--will-cite", "-j2", "train_sim run study/runs/{}/config.yaml --threads 1 > study/runs/{}/summary.json",
-             "::::", "study/jobs.txt"], cwd=self.here, check=True, stderr=subprocess.DEVNULL)
+            [
+                "parallel",
+                "--will-cite",
+                "-j2",
+                "train_sim run study/runs/{}/config.yaml --threads 1 > study/runs/{}/summary.json",
+                "::::",
+                "study/jobs.txt",
+            ],
+            cwd=self.here,
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
         done = self.sweep(self.out, "--collect")
         self.assertEqual(0, done.returncode, done.stderr)
         self.assertEqual(3, len(table(self.out / "results.csv")))
@@ -203,18 +270,27 @@ class Calibrate(InAFolder):
     def calibrate(self, text, *words):
         file = self.here / "fit.yaml"
         file.write_text(text)
-        return subprocess.run(["rosrun", "train_brake", "calibrate", str(file), *map(str, words)], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, check=False)
+        return subprocess.run(
+            ["rosrun", "train_brake", "calibrate", str(file), *map(str, words)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
 
     def test_finds_the_start_speed_and_the_grade_that_two_speeds_tell(self):
-        done = self.calibrate(f"""
+        done = self.calibrate(
+            f"""
 parameters:
   - {{path: initial_speed_kmh, start: 40, lowest: 1, highest: 100}}
   - {{path: "track.grades[0].grade_percent", start: -1, lowest: -5, highest: 5}}
 targets:
   - {{scenario: rolling.yaml, set: [duration_s=10], result: final_speed_kmh.mean, value: {50 + 3.6 * GRAVITY * 0.02 * 10}, tolerance: 0.001}}
   - {{scenario: rolling.yaml, set: [duration_s=20], result: final_speed_kmh.mean, value: {50 + 3.6 * GRAVITY * 0.02 * 20}, tolerance: 0.001}}
-""", "--out", self.here / "fit.json")
+""",
+            "--out",
+            self.here / "fit.json",
+        )
         self.assertEqual(0, done.returncode, done.stderr)
         found = json.loads((self.here / "fit.json").read_text())
         values = {parameter["path"]: parameter["value"] for parameter in found["parameters"]}
@@ -224,21 +300,29 @@ targets:
         self.assertIn("--set initial_speed_kmh=", done.stdout)
 
     def test_targets_that_cannot_be_met_end_with_1_and_say_so(self):
-        done = self.calibrate("""
+        done = self.calibrate(
+            """
 parameters: [{path: initial_speed_kmh, start: 40, lowest: 30, highest: 50}]
 targets: [{scenario: rolling.yaml, set: [track=level], result: final_speed_kmh.mean, value: 60, tolerance: 0.01}]
-""")
+"""
+        )
         self.assertEqual(1, done.returncode)
         self.assertIn("initial_speed_kmh is at its highest", done.stderr)
 
     def test_what_is_wrong_with_the_file_is_told_at_once(self):
-        done = self.calibrate("""
+        done = self.calibrate(
+            """
 parameters: [{path: initial_speed_kmh, start: 4, lowest: 30, highst: 50}]
 targets: [{scenario: rolling.yaml, result: final_speed_kmh.mean, value: fast, tolerance: 0}]
-""")
+"""
+        )
         self.assertEqual(2, done.returncode)
-        for text in ("parameters[0].highst is not a known key; did you mean highest?", "parameters[0].highest is missing",
-                     "targets[0].value must be a number, got 'fast'", "targets[0].tolerance must be > 0, got 0"):
+        for text in (
+            "parameters[0].highst is not a known key; did you mean highest?",
+            "parameters[0].highest is missing",
+            "targets[0].value must be a number, got 'fast'",
+            "targets[0].tolerance must be > 0, got 0",
+        ):
             self.assertIn(text, done.stderr)
 
 

@@ -26,23 +26,28 @@ WORD = 2**64 - 1
 
 def text_digest(text):
     """The digest of lockstep.h, by its description."""
+
     def mix(x):
         for _ in range(2):
-            x = ((x ^ (x >> 32)) * 0xd6e8feb86659fd93) & WORD
+            x = ((x ^ (x >> 32)) * 0xD6E8FEB86659FD93) & WORD
         return x ^ (x >> 32)
 
     data = text.encode()
-    state = mix(0x9e3779b97f4a7c15 ^ len(data))
+    state = mix(0x9E3779B97F4A7C15 ^ len(data))
     for begin in range(0, len(data), 8):
-        state = mix(state ^ int.from_bytes(data[begin:begin + 8], "little"))
+        state = mix(state ^ int.from_bytes(data[begin : begin + 8], "little"))
     return state
 
 
 def resolved_scenario():
     """The scenario as the master sends it, with all parts in place."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["rosrun", "train_sim", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
-                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            ["rosrun", "train_sim", "train_sim", "run", rospy.get_param("~scenario"), "--out", folder],
+            check=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         return (pathlib.Path(folder) / "config.yaml").read_text()
 
 
@@ -57,15 +62,27 @@ class WagonServices(unittest.TestCase):
         cls.step = rospy.ServiceProxy(NODE + "/step", Step, persistent=True)
 
     def configure_request(self, **changes):
-        request = ConfigureRequest(protocol_version=ConfigureRequest.PROTOCOL_VERSION, run_id=self.run_id, first_vehicle=1,
-                                   vehicle_count=2, scenario=self.scenario, scenario_digest=text_digest(self.scenario))
+        request = ConfigureRequest(
+            protocol_version=ConfigureRequest.PROTOCOL_VERSION,
+            run_id=self.run_id,
+            first_vehicle=1,
+            vehicle_count=2,
+            scenario=self.scenario,
+            scenario_digest=text_digest(self.scenario),
+        )
         for key, value in changes.items():
             setattr(request, key, value)
         return request
 
     def step_request(self, exchange, **changes):
-        request = StepRequest(run_id=self.run_id, exchange=exchange, dt_s=0.001, steps=2, coupler_force_n=[0.0, 1e4, 2e4],
-                              cylinder_pressure_pa=[1e5, 2e5])
+        request = StepRequest(
+            run_id=self.run_id,
+            exchange=exchange,
+            dt_s=0.001,
+            steps=2,
+            coupler_force_n=[0.0, 1e4, 2e4],
+            cylinder_pressure_pa=[1e5, 2e5],
+        )
         for key, value in changes.items():
             setattr(request, key, value)
         return request
@@ -90,18 +107,24 @@ class WagonServices(unittest.TestCase):
         self.assertEqual([detail.vehicle for detail in reply.record.details], [1])
 
     def test_wrong_version_and_digest_are_refused_with_both_values(self):
-        self.refused(self.configure(self.configure_request(protocol_version=99)),
-                     "the master speaks protocol version 99, this wagon node version %d" % ConfigureRequest.PROTOCOL_VERSION)
-        self.refused(self.configure(self.configure_request(scenario_digest=1)),
-                     "digest 0x0000000000000001, but has 0x%016x" % text_digest(self.scenario))
+        self.refused(
+            self.configure(self.configure_request(protocol_version=99)),
+            "the master speaks protocol version 99, this wagon node version %d" % ConfigureRequest.PROTOCOL_VERSION,
+        )
+        self.refused(
+            self.configure(self.configure_request(scenario_digest=1)),
+            "digest 0x0000000000000001, but has 0x%016x" % text_digest(self.scenario),
+        )
 
     def test_a_step_moves_and_its_repetition_does_not(self):
         self.begin()
         first = self.step(self.step_request(0, run_id=self.run_id, record=True, ledger=True))
         self.assertTrue(first.ok, first.message)
         self.assertEqual(self.step(self.step_request(0, run_id=self.run_id)), first)
-        self.refused(self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0, 0.0])),
-                     "exchange 0 has been computed already, with other loads")
+        self.refused(
+            self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0, 0.0])),
+            "exchange 0 has been computed already, with other loads",
+        )
         # About 22.2 m/s for 2 ms; brake and couplers change the speed by far less than 1 % in that time.
         for distance in first.head_displacement_m:
             self.assertAlmostEqual(distance, 80 / 3.6 * 0.002, delta=0.01 * 80 / 3.6 * 0.002)
@@ -119,10 +142,14 @@ class WagonServices(unittest.TestCase):
 
     def test_what_is_not_finite_or_of_a_wrong_size_is_refused(self):
         self.begin()
-        self.refused(self.step(self.step_request(0, run_id=self.run_id, coupler_force_n=[0.0, math.nan, 0.0])),
-                     "coupler_force_n[1] is nan")
-        self.refused(self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0])),
-                     "cylinder_pressure_pa has 1 values, expected 2")
+        self.refused(
+            self.step(self.step_request(0, run_id=self.run_id, coupler_force_n=[0.0, math.nan, 0.0])),
+            "coupler_force_n[1] is nan",
+        )
+        self.refused(
+            self.step(self.step_request(0, run_id=self.run_id, cylinder_pressure_pa=[0.0])),
+            "cylinder_pressure_pa has 1 values, expected 2",
+        )
         self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
 
     def test_another_run_changes_nothing(self):
@@ -130,10 +157,16 @@ class WagonServices(unittest.TestCase):
         self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
         self.refused(self.step(self.step_request(1, run_id=99)), "run 99 is not known here")
         # Somebody else, from the command line, while we are connected.
-        arguments = "{protocol_version: %d, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', " \
-                    "scenario_digest: %d}" % (ConfigureRequest.PROTOCOL_VERSION, text_digest(""))
-        call = subprocess.run(["rosservice", "call", NODE + "/configure", arguments], stdout=subprocess.PIPE,
-                              universal_newlines=True, check=True)
+        arguments = (
+            "{protocol_version: %d, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', "
+            "scenario_digest: %d}" % (ConfigureRequest.PROTOCOL_VERSION, text_digest(""))
+        )
+        call = subprocess.run(
+            ["rosservice", "call", NODE + "/configure", arguments],
+            stdout=subprocess.PIPE,
+            universal_newlines=True,
+            check=True,
+        )
         self.assertIn("ok: False", call.stdout)
         self.assertIn("driven in another run", call.stdout)
         self.assertNotIn(str(self.run_id), call.stdout)
@@ -160,10 +193,16 @@ class WagonServices(unittest.TestCase):
 
     def test_rosservice_steps_a_train_by_hand(self):
         self.begin()
-        arguments = "{run_id: %d, exchange: 0, dt_s: 0.001, steps: 2, coupler_force_n: [0, 0, 0], " \
-                    "cylinder_pressure_pa: [0, 0]}" % self.run_id
-        call = subprocess.run(["rosservice", "call", NODE + "/step", arguments], stdout=subprocess.PIPE,
-                              universal_newlines=True, check=True)
+        arguments = (
+            "{run_id: %d, exchange: 0, dt_s: 0.001, steps: 2, coupler_force_n: [0, 0, 0], "
+            "cylinder_pressure_pa: [0, 0]}" % self.run_id
+        )
+        call = subprocess.run(
+            ["rosservice", "call", NODE + "/step", arguments],
+            stdout=subprocess.PIPE,
+            universal_newlines=True,
+            check=True,
+        )
         self.assertIn("ok: True", call.stdout)
         self.assertTrue(self.step(self.step_request(1, run_id=self.run_id)).ok)
 
@@ -171,10 +210,16 @@ class WagonServices(unittest.TestCase):
 
     def connect(self, **fields):
         """A connection to ~step, and the header that came back."""
-        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://"):].split(":")
+        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://") :].split(":")
         connection = socket.create_connection((host, int(port)), 10)
         self.addCleanup(connection.close)
-        header = {"callerid": "/stranger", "service": NODE + "/step", "md5sum": Step._md5sum, "persistent": "1", **fields}
+        header = {
+            "callerid": "/stranger",
+            "service": NODE + "/step",
+            "md5sum": Step._md5sum,
+            "persistent": "1",
+            **fields,
+        }
         lines = [f"{key}={value}".encode() for key, value in header.items()]
         connection.sendall(frame(b"".join(frame(line) for line in lines)))
         return connection, read_frame(connection)
@@ -228,7 +273,7 @@ class WagonServices(unittest.TestCase):
 
     def test_whoever_speaks_no_tcpros_is_cut_off(self):
         self.begin()
-        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://"):].split(":")
+        host, port = rosservice.get_service_uri(NODE + "/step")[len("rosrpc://") :].split(":")
         for greeting in (b"GET / HTTP/1.1\r\n\r\n", frame(b"no header"), b"\xff" * 100):
             with socket.create_connection((host, int(port)), 10) as connection:
                 connection.sendall(greeting)

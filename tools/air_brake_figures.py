@@ -29,7 +29,15 @@ KPA = 1e-3
 
 def run(train_sim, folder, scenario, name, *overrides):
     out = folder / name
-    command = [train_sim, "run", str(ROOT / "config" / "scenarios" / f"{scenario}.yaml"), "--model", "ltd", "--out", str(out)]
+    command = [
+        train_sim,
+        "run",
+        str(ROOT / "config" / "scenarios" / f"{scenario}.yaml"),
+        "--model",
+        "ltd",
+        "--out",
+        str(out),
+    ]
     for override in overrides:
         command += ["--set", override]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -41,8 +49,13 @@ def run(train_sim, folder, scenario, name, *overrides):
 def picture(axes, table, field, end_s, label):
     rows = table.time_s <= end_s
     values = KPA * table[field][rows].T
-    image = axes.imshow(values, aspect="auto", interpolation="nearest", cmap=style.SEQUENTIAL,
-                        extent=(0.0, table.time_s[rows][-1], values.shape[0] + 0.5, 0.5))
+    image = axes.imshow(
+        values,
+        aspect="auto",
+        interpolation="nearest",
+        cmap=style.SEQUENTIAL,
+        extent=(0.0, table.time_s[rows][-1], values.shape[0] + 0.5, 0.5),
+    )
     axes.grid(False)
     axes.set_xlabel("time [s]")
     axes.figure.colorbar(image, ax=axes, label=label, aspect=25, pad=0.02).outline.set_visible(False)
@@ -66,9 +79,19 @@ def charging(table, out):
     figure, axes = pyplot.subplots(figsize=(11, 3.6), layout="constrained")
     last = table["pipe_pressure_pa"].shape[1]
     for vehicle, colour in zip((1, (last + 1) // 2, last), style.COLOURS):
-        axes.plot(table.time_s, KPA * table["pipe_pressure_pa"][:, vehicle - 1], color=colour, label=f"pipe, vehicle {vehicle}")
-        axes.plot(table.time_s, KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1], color=colour, linestyle=(0, (4, 2)),
-                  label=f"auxiliary reservoir, vehicle {vehicle}")
+        axes.plot(
+            table.time_s,
+            KPA * table["pipe_pressure_pa"][:, vehicle - 1],
+            color=colour,
+            label=f"pipe, vehicle {vehicle}",
+        )
+        axes.plot(
+            table.time_s,
+            KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1],
+            color=colour,
+            linestyle=(0, (4, 2)),
+            label=f"auxiliary reservoir, vehicle {vehicle}",
+        )
     tail = table["pipe_pressure_pa"][:, -1]
     goal = 0.95 * table["pipe_pressure_pa"][-1, 0]
     at_s = table.time_s[numpy.argmax(tail >= goal)]
@@ -88,14 +111,31 @@ def second_application(table, out):
     above.set_ylabel("vehicle")
     last = table["pipe_pressure_pa"].shape[1]
     for vehicle, colour in ((1, style.BLUE), (last, style.VERMILLION)):
-        below.plot(table.time_s, KPA * table["pipe_pressure_pa"][:, vehicle - 1], color=colour, label=f"pipe, vehicle {vehicle}")
-        below.plot(table.time_s, KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1], color=colour, linestyle=(0, (4, 2)),
-                   label=f"auxiliary reservoir, vehicle {vehicle}")
+        below.plot(
+            table.time_s,
+            KPA * table["pipe_pressure_pa"][:, vehicle - 1],
+            color=colour,
+            label=f"pipe, vehicle {vehicle}",
+        )
+        below.plot(
+            table.time_s,
+            KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1],
+            color=colour,
+            linestyle=(0, (4, 2)),
+            label=f"auxiliary reservoir, vehicle {vehicle}",
+        )
     for time_s, text in ((5, "70 kPa"), (65, "release"), (80, "50 kPa"), (180, "100 kPa")):
         for axes in (above, below):
             axes.axvline(time_s, color=style.MUTED, linestyle=(0, (1, 2)))
-        below.annotate(text, (time_s, 1.0), (3, -10), xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=9,
-                       color=style.MUTED)
+        below.annotate(
+            text,
+            (time_s, 1.0),
+            (3, -10),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            fontsize=9,
+            color=style.MUTED,
+        )
     below.set_xlabel("time [s]")
     below.set_ylabel("pressure [kPa]")
     below.legend(loc="upper right", fontsize=9)
@@ -117,13 +157,20 @@ def build_up(tables, out):
 
 
 def against_empirical(pairs, out):
-    figure, panels = pyplot.subplots(2, 2, figsize=(11, 7.2), sharey="col", layout="constrained",
-                                     gridspec_kw={"width_ratios": [3, 2]})
+    figure, panels = pyplot.subplots(
+        2, 2, figsize=(11, 7.2), sharey="col", layout="constrained", gridspec_kw={"width_ratios": [3, 2]}
+    )
     for (title, end_s, tables), (left, right) in zip(pairs, panels):
         for vehicle, colour in zip((1, 61, 122, 182, 242), style.COLOURS):
             for (kind, table), line in zip(tables.items(), ("-", (0, (4, 2)))):
-                left.plot(table.time_s, KPA * table["cylinder_pressure_pa"][:, vehicle - 1], color=colour, linestyle=line,
-                          linewidth=1.5, label=f"vehicle {vehicle}" if line == "-" else None)
+                left.plot(
+                    table.time_s,
+                    KPA * table["cylinder_pressure_pa"][:, vehicle - 1],
+                    color=colour,
+                    linestyle=line,
+                    linewidth=1.5,
+                    label=f"vehicle {vehicle}" if line == "-" else None,
+                )
         left.set_xlim(0.0, end_s)
         left.set_title(f"{title}: {' (lines), '.join(tables)} (dashed)", loc="left", fontsize=11)
         left.set_ylabel("cylinder [kPa]")
@@ -153,16 +200,39 @@ def main(train_sim, out):
         service(of("full_service_ab", "duration_s=62"), out)
         charging(of("charging"), out)
         second_application(of("cycle_braking_long_grade"), out)
-        build_up({"ECP": of("ecp_against_head_end"), "AB, vented at the head": of("ecp_against_head_end", "brake=ab_head_end"),
-                  "AB with a two-way End-of-Train device": of(
-                      "ecp_against_head_end", "brake=ab_head_end",
-                      "brake.sources=[{name: driver, vehicle: 1, kind: driver}, {name: device, vehicle: -1, kind: end_of_train, "
-                      "radio_delay_s: 1}]")}, out)
+        build_up(
+            {
+                "ECP": of("ecp_against_head_end"),
+                "AB, vented at the head": of("ecp_against_head_end", "brake=ab_head_end"),
+                "AB with a two-way End-of-Train device": of(
+                    "ecp_against_head_end",
+                    "brake=ab_head_end",
+                    "brake.sources=[{name: driver, vehicle: 1, kind: driver}, {name: device, vehicle: -1, kind: end_of_train, "
+                    "radio_delay_s: 1}]",
+                ),
+            },
+            out,
+        )
         pairs = []
-        for title, end_s, command in (("emergency", 15.0, "emergency"), ("full service", 60.0, "apply, reduction_kpa: 170")):
-            pairs.append((title, end_s, {
-                brake: of("emergency_ab", f"brake={brake}", f"commands=[{{time_s: 0, kind: {command}}}]", f"duration_s={end_s}")
-                for brake in ("calibrated", "ab_distributed")}))
+        for title, end_s, command in (
+            ("emergency", 15.0, "emergency"),
+            ("full service", 60.0, "apply, reduction_kpa: 170"),
+        ):
+            pairs.append(
+                (
+                    title,
+                    end_s,
+                    {
+                        brake: of(
+                            "emergency_ab",
+                            f"brake={brake}",
+                            f"commands=[{{time_s: 0, kind: {command}}}]",
+                            f"duration_s={end_s}",
+                        )
+                        for brake in ("calibrated", "ab_distributed")
+                    },
+                )
+            )
         against_empirical(pairs, out)
 
 

@@ -23,12 +23,47 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         here = pathlib.Path(name)
         call("train_sim", "run", EMERGENCY, "--model", "ltd", *STAND, "--out", here / "stand")
-        call("train_sim", "run", EMERGENCY, "--model", "ltd", *STAND, "--set", "initial_speed_kmh=60", "--out", here / "slower")
-        call("rosrun", "train_brake", "report", here / "stand", here / "slower", "--out", here / "c.html", "--figures", here / "f")
+        call(
+            "train_sim",
+            "run",
+            EMERGENCY,
+            "--model",
+            "ltd",
+            *STAND,
+            "--set",
+            "initial_speed_kmh=60",
+            "--out",
+            here / "slower"
+        )
+        call(
+            "rosrun",
+            "train_brake",
+            "report",
+            here / "stand",
+            here / "slower",
+            "--out",
+            here / "c.html",
+            "--figures",
+            here / "f",
+        )
         shutil.copy(here / "f" / "speeds.png", FIGURES / "compared_speeds.png")
         shutil.copy(here / "f" / "largest_coupler_forces.png", FIGURES / "compared_forces.png")
-        call("rosrun", "train_brake", "sweep", EMERGENCY, here / "nine", "--model", "ltd", "--set", "duration_s=20", "--figures",
-             "--grid", "initial_speed_kmh=40:80:3", "--grid", "train.connection.draft_gear.slack_m=0,0.01,0.02")
+        call(
+            "rosrun",
+            "train_brake",
+            "sweep",
+            EMERGENCY,
+            here / "nine",
+            "--model",
+            "ltd",
+            "--set",
+            "duration_s=20",
+            "--figures",
+            "--grid",
+            "initial_speed_kmh=40:80:3",
+            "--grid",
+            "train.connection.draft_gear.slack_m=0,0.01,0.02",
+        )
         shutil.copy(here / "nine" / "figures" / "max_tension_n_value_over_initial_speed_kmh.png", FIGURES / "study.png")
 
 

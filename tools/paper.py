@@ -24,8 +24,16 @@ from train_brake_report.run import read_couplers  # noqa: E402
 
 
 def run(train_sim, scenario, model, out):
-    command = [train_sim, "run", str(ROOT / "config" / "scenarios" / f"{scenario}.yaml"), "--model", model, "--out", str(out),
-               "--csv"]
+    command = [
+        train_sim,
+        "run",
+        str(ROOT / "config" / "scenarios" / f"{scenario}.yaml"),
+        "--model",
+        model,
+        "--out",
+        str(out),
+        "--csv",
+    ]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)} ended with exit code {done.returncode}:\n{done.stderr}")
@@ -49,40 +57,65 @@ def print_table_1(results):
 
 def print_figure_10(results):
     print("\nFigure 10: largest coupler forces [kN] and where (connection); difference 2d - ltd over all connections")
-    print(f"{'':<17}{'ltd tension':>18}{'2d tension':>18}{'ltd compression':>18}{'2d compression':>18}"
-          f"{'mean diff.':>12}{'largest':>16}")
+    print(
+        f"{'':<17}{'ltd tension':>18}{'2d tension':>18}{'ltd compression':>18}{'2d compression':>18}"
+        f"{'mean diff.':>12}{'largest':>16}"
+    )
     for scenario in SCENARIOS:
         row = f"{scenario:<17}"
         for key, column in (("max_tension_n", "max_tension_n"), ("max_compression_n", "max_compression_n")):
             for model in ("ltd", "2d"):
                 extreme = results[scenario, model][key]
                 row += f"{extreme['value'] / 1e3:12.1f} @{extreme['connection']:>4d}"
-        mean, largest, where = compare_largest(*(
-            numpy.array([results[scenario, model]["couplers"][side] for side in ("max_tension_n", "max_compression_n")])
-            for model in ("ltd", "2d")))
+        mean, largest, where = compare_largest(
+            *(
+                numpy.array(
+                    [results[scenario, model]["couplers"][side] for side in ("max_tension_n", "max_compression_n")]
+                )
+                for model in ("ltd", "2d")
+            )
+        )
         row += f"{mean / 1e3:12.2f}{largest / 1e3:+10.1f} @{where:>4d}"
         print(row)
     print(f"\nCoupler {COUPLER}, emergency, largest tension [kN]:")
     for model in ("ltd", "2d"):
-        largest_n, time_s = (results["emergency", model]["couplers"][name][COUPLER - 1]
-                             for name in ("max_tension_n", "max_tension_time_s"))
-        print(f"  {model:<6}{largest_n / 1e3:8.1f} at {time_s:.2f} s"
-              f"   (the paper: {COUPLER_TENSION_KN[model]:g} near 35 s)")
+        largest_n, time_s = (
+            results["emergency", model]["couplers"][name][COUPLER - 1]
+            for name in ("max_tension_n", "max_tension_time_s")
+        )
+        print(
+            f"  {model:<6}{largest_n / 1e3:8.1f} at {time_s:.2f} s"
+            f"   (the paper: {COUPLER_TENSION_KN[model]:g} near 35 s)"
+        )
 
 
 def print_energy(results):
     print("\nEnergy ledger: residual over initial energy")
     for scenario in SCENARIOS:
-        print(f"  {scenario:<15}" + "".join(
-            f"{model:>16} {results[scenario, model]['energy']['residual_j'] / results[scenario, model]['energy']['initial_j']:+.1e}"
-            for model in MODELS))
+        print(
+            f"  {scenario:<15}"
+            + "".join(
+                f"{model:>16} {results[scenario, model]['energy']['residual_j'] / results[scenario, model]['energy']['initial_j']:+.1e}"
+                for model in MODELS
+            )
+        )
 
 
 def write_page(train_sim, folder):
     # In this order: differences are taken to the first, LTD with inertia.
     runs = [folder / f"{s}_{m}" for s in SCENARIOS for m in ("ltd", "2d", "ltd-no-inertia")]
-    return report([*map(str, runs), str(folder / "dip"), "--by-scenario", "--vehicle",
-                   str(ROOT / "config" / "vehicles" / "ore_wagon.yaml"), "--out", str(folder / "report.html")], [train_sim])
+    return report(
+        [
+            *map(str, runs),
+            str(folder / "dip"),
+            "--by-scenario",
+            "--vehicle",
+            str(ROOT / "config" / "vehicles" / "ore_wagon.yaml"),
+            "--out",
+            str(folder / "report.html"),
+        ],
+        [train_sim],
+    )
 
 
 def main():

@@ -31,9 +31,27 @@ SECOND_INCREASE_KN = 700.0
 def run(train_sim: str, model: str, start_kmh: float, folder: pathlib.Path) -> numpy.ndarray:
     """Largest tension of each connection [kN]."""
     if not (folder / "couplers.csv").exists() or not json.loads((folder / "summary.json").read_text())["complete"]:
-        command = [train_sim, "run", str(ROOT / "config/scenarios/emergency.yaml"), "--model", model, "--threads", "1", "--set",
-                   "train.connection=paper_lugre", "--set", f"initial_speed_kmh={start_kmh:.6f}", "--checkpoint-interval", "0",
-                   "--set", "record_interval_s=1", "--set", "detail_vehicles=[]", "--out", str(folder)]
+        command = [
+            train_sim,
+            "run",
+            str(ROOT / "config/scenarios/emergency.yaml"),
+            "--model",
+            model,
+            "--threads",
+            "1",
+            "--set",
+            "train.connection=paper_lugre",
+            "--set",
+            f"initial_speed_kmh={start_kmh:.6f}",
+            "--checkpoint-interval",
+            "0",
+            "--set",
+            "record_interval_s=1",
+            "--set",
+            "detail_vehicles=[]",
+            "--out",
+            str(folder),
+        ]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     with open(folder / "couplers.csv", newline="") as table:
         return 1e-3 * numpy.array([float(row["max_tension_n"]) for row in csv.DictReader(table)])
@@ -44,7 +62,9 @@ def draw(starts: numpy.ndarray, tension: dict, file: pathlib.Path) -> None:
     colours = {"ltd": "#0072b2", "2d": "#d55e00"}
     for model, values in tension.items():
         above.plot(starts, values[:, COUPLER - 1], "o", color=colours[model], label=f"coupler {COUPLER}, {model}")
-        above.axhline(PAPER_KN[model], color=colours[model], linestyle=(0, (4, 3)), linewidth=1.0, label=f"paper, {model}")
+        above.axhline(
+            PAPER_KN[model], color=colours[model], linestyle=(0, (4, 3)), linewidth=1.0, label=f"paper, {model}"
+        )
     above.set_xlabel("start speed [km/h]")
     above.set_ylabel("largest tension [kN]")
     above.legend(ncol=4, loc="lower left", bbox_to_anchor=(0, 1), frameon=False)
@@ -72,8 +92,13 @@ def main() -> int:
         parser.error("--starts must be at least 2")
     starts = numpy.linspace(FIRST_KMH, LAST_KMH, options.starts)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        jobs = {model: [pool.submit(run, options.train_sim, model, start, options.out / f"{model}_{start:.6f}")
-                        for start in starts] for model in PAPER_KN}
+        jobs = {
+            model: [
+                pool.submit(run, options.train_sim, model, start, options.out / f"{model}_{start:.6f}")
+                for start in starts
+            ]
+            for model in PAPER_KN
+        }
         try:
             tension = {model: numpy.array([job.result() for job in of]) for model, of in jobs.items()}
         except subprocess.CalledProcessError as error:
@@ -84,10 +109,14 @@ def main() -> int:
     named = difference[:, [c - 1 for c in NAMED]].mean(axis=1)
     for model, values in tension.items():
         one = values[:, COUPLER - 1]
-        print(f"{model:>4}: coupler {COUPLER} {one.mean():.0f} +- {one.std(ddof=1):.0f} kN (paper {PAPER_KN[model]:.0f}); over "
-              f"{SECOND_INCREASE_KN:.0f} kN in {(one > SECOND_INCREASE_KN).sum()} of {len(one)} runs")
+        print(
+            f"{model:>4}: coupler {COUPLER} {one.mean():.0f} +- {one.std(ddof=1):.0f} kN (paper {PAPER_KN[model]:.0f}); over "
+            f"{SECOND_INCREASE_KN:.0f} kN in {(one > SECOND_INCREASE_KN).sum()} of {len(one)} runs"
+        )
     for name, values in ((f"{NAMED[0]}-{NAMED[-1]}", named), ("all", difference.mean(axis=1))):
-        print(f"2D - LTD, connections {name}: {values.mean():+.1f} +- {values.std(ddof=1) / numpy.sqrt(len(values)):.1f} kN")
+        print(
+            f"2D - LTD, connections {name}: {values.mean():+.1f} +- {values.std(ddof=1) / numpy.sqrt(len(values)):.1f} kN"
+        )
     draw(starts, tension, options.out / "paper_lugre.png")
     print(options.out / "paper_lugre.png")
     return 0

@@ -35,11 +35,15 @@ def resolves(page, link):
 
 def main():
     copy_pages()
-    done = subprocess.run(["mkdocs", "build", "--quiet", "--strict", "--config-file", str(ROOT / "mkdocs.yml")], check=False)
+    done = subprocess.run(
+        ["mkdocs", "build", "--quiet", "--strict", "--config-file", str(ROOT / "mkdocs.yml")], check=False
+    )
     if done.returncode:
         sys.exit("site.py: MkDocs found faults in the pages")
     (ROOT / "site" / "api").mkdir(exist_ok=True)
-    settings = (ROOT / "Doxyfile").read_text() + f"\nOUTPUT_DIRECTORY = {ROOT / 'build_site'}\nHTML_OUTPUT = {ROOT / 'site' / 'api'}\n"
+    settings = (
+        ROOT / "Doxyfile"
+    ).read_text() + f"\nOUTPUT_DIRECTORY = {ROOT / 'build_site'}\nHTML_OUTPUT = {ROOT / 'site' / 'api'}\n"
     subprocess.run(["doxygen", "-"], input=settings, text=True, cwd=ROOT, check=True)
     print(f"site: wrote {ROOT / 'site' / 'index.html'}, API in {ROOT / 'site' / 'api' / 'index.html'}")
 

@@ -23,8 +23,9 @@ RESULTS = workspace.ROOT / "results" / "bench"
 
 def main():
     parser = argparse.ArgumentParser(prog="make bench", description=__doc__, epilog="sections: " + " ".join(SECTIONS))
-    parser.add_argument("--only", default="", metavar="NAME,...",
-                        help="measure these sections; the others keep their results")
+    parser.add_argument(
+        "--only", default="", metavar="NAME,...", help="measure these sections; the others keep their results"
+    )
     arguments = parser.parse_args()
     chosen = arguments.only.replace(",", " ").split() or SECTIONS
     unknown = [name for name in chosen if name not in SECTIONS]
@@ -54,8 +55,12 @@ def _measure(name):
         RESULTS.mkdir(parents=True, exist_ok=True)
         file.unlink(missing_ok=True)
         tables, facts = importlib.import_module(name).run()
-        result = {"machine": machine.describe(), "commit": workspace.commit(),
-                  "tables": [dataclasses.asdict(t) for t in tables], "facts": facts}
+        result = {
+            "machine": machine.describe(),
+            "commit": workspace.commit(),
+            "tables": [dataclasses.asdict(t) for t in tables],
+            "facts": facts,
+        }
         file.write_text(json.dumps(result, indent=1) + "\n")
     except (measure.Failed, OSError) as failure:
         return f"make bench: {name}: {failure}"
@@ -76,8 +81,10 @@ def _load():
         if "commit" in result and result["machine"] == [list(pair) for pair in machine.describe()]:
             results[name] = result
         else:
-            print(f"{file.relative_to(workspace.ROOT)} is of another machine, or of an older make bench: left out",
-                  file=sys.stderr)
+            print(
+                f"{file.relative_to(workspace.ROOT)} is of another machine, or of an older make bench: left out",
+                file=sys.stderr,
+            )
     return results
 
 

@@ -8,13 +8,13 @@ WAYS = {  # how the master calls wagon nodes: arguments of train.launch
     "shared memory": [],
     "TCP": ["shared_memory:=false"],
 }
-PAIRED = "shared memory"                   # beside MPI at any number of ranks; the first of WAYS
+PAIRED = "shared memory"  # beside MPI at any number of ranks; the first of WAYS
 MANY_RANKS = 100
 
 
 def run():
-    cost = {}    # (way, ranks): seconds per exchange, of every run
-    ends = {}    # ranks: (start, stop) in seconds
+    cost = {}  # (way, ranks): seconds per exchange, of every run
+    ends = {}  # ranks: (start, stop) in seconds
     digests = set()
     for ranks, exchanges in EXCHANGES.items():
         settings = [f"duration_s={exchanges / 1000:g}"]
@@ -26,8 +26,7 @@ def run():
         if None not in mpi:
             cost["MPI", ranks] = [run["wall_s"] / run["exchanges"] for run in mpi]
             digests |= {(ranks, run["state_digest"]) for run in mpi}
-        ends[ranks] = [measure.median([getattr(launch, end) for launch in of_ways[0]])
-                       for end in ("start_s", "stop_s")]
+        ends[ranks] = [measure.median([getattr(launch, end) for launch in of_ways[0]]) for end in ("start_s", "stop_s")]
     if len(digests) != len(EXCHANGES):
         raise measure.Failed(f"the digests differ between the ways to call the ranks: {sorted(digests)}")
 
@@ -39,9 +38,14 @@ def run():
         if way == PAIRED:
             rows.append(("from ... to", *[f"{number(min(r))} ... {number(max(r))}" if r else "-" for r in ratios]))
     table = Table("ranks; wall time of an exchange [ms]", columns, rows)
-    starts = Table("nodes; launch [s]", columns, [
-        ("until the run begins", *[number(ends[ranks][0]) for ranks in EXCHANGES]),
-        ("from its end to that of roslaunch", *[number(ends[ranks][1]) for ranks in EXCHANGES])])
+    starts = Table(
+        "nodes; launch [s]",
+        columns,
+        [
+            ("until the run begins", *[number(ends[ranks][0]) for ranks in EXCHANGES]),
+            ("from its end to that of roslaunch", *[number(ends[ranks][1]) for ranks in EXCHANGES]),
+        ],
+    )
     facts = {"242_ms": _ms(cost[PAIRED, workspace.VEHICLES])}
     for way, name in ((PAIRED, "to_mpi"), ("TCP", "tcp_to_mpi")):
         for ranks in EXCHANGES:

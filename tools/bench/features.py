@@ -10,10 +10,14 @@ import workspace
 from table import Table, number, times
 
 STOP = "commands=[{time_s: 0, kind: emergency}]"
-PATCHES = ("track={name: patches, friction_patches: [{from_m: -5000, to_m: 50, adhesion: wet}, "
-           "{from_m: 50, to_m: 60, adhesion: dry}, {from_m: 60, to_m: 5000, adhesion: wet}]}")
-GRADES = ("track={name: grades, grades: [{from_m: -2500, grade_percent: 0.1}, {from_m: -1000, grade_percent: -0.1}, "
-          "{from_m: 50, grade_percent: 0.0}]}")
+PATCHES = (
+    "track={name: patches, friction_patches: [{from_m: -5000, to_m: 50, adhesion: wet}, "
+    "{from_m: 50, to_m: 60, adhesion: dry}, {from_m: 60, to_m: 5000, adhesion: wet}]}"
+)
+GRADES = (
+    "track={name: grades, grades: [{from_m: -2500, grade_percent: 0.1}, {from_m: -1000, grade_percent: -0.1}, "
+    "{from_m: 50, grade_percent: 0.0}]}"
+)
 DIPS = "track={name: dips, dips: [{from_m: 40, depth_m: 0.01, length_m: 10}]}"
 PROTECTED = [f"train.consist[{group}].vehicle.wheel_slide_protection=threshold_3state" for group in range(4)]
 
@@ -40,15 +44,27 @@ def run():
         plain, with_it = measure.in_turn(REPETITIONS, lambda: _ns(model, []), lambda: _ns(model, settings))
         added = measure.median([b - a for a, b in zip(plain, with_it)])
         facts[f"{fact}_ns"] = added
-        rows.append((f"{model}: {what}", number(measure.median(plain)), number(measure.median(with_it)),
-                     f"{added:+.1f}", times(measure.ratio(with_it, plain))))
+        rows.append(
+            (
+                f"{model}: {what}",
+                number(measure.median(plain)),
+                number(measure.median(with_it)),
+                f"{added:+.1f}",
+                times(measure.ratio(with_it, plain)),
+            )
+        )
     table = Table("parts of a train [ns per vehicle-step]", ["without", "with", "it adds", "ratio"], rows)
     return [table, _beside_work(facts)], facts
 
 
 def _ns(model, settings):
-    run = workspace.train_sim("--model", model, "--threads", 1, settings=[
-        STOP, "detail_vehicles=[]", f"duration_s={SIMULATED_S[model]}", *settings])
+    run = workspace.train_sim(
+        "--model",
+        model,
+        "--threads",
+        1,
+        settings=[STOP, "detail_vehicles=[]", f"duration_s={SIMULATED_S[model]}", *settings],
+    )
     return run.summary["ns_per_vehicle_step"]
 
 
@@ -63,10 +79,12 @@ def _beside_work(facts):
             one, all_cores = measure.in_turn(REPETITIONS, lambda: _wall_s(1), lambda: _wall_s(cores))
         ratio = measure.ratio(all_cores, one)
         facts[f"threads_beside_{busy}"] = ratio
-        rows.append((f"{busy} busy core(s)", number(measure.median(one)), number(measure.median(all_cores)),
-                     times(ratio)))
-    return Table(f"2D train, its first 20 s [s], {cores} threads against one", ["1 thread", f"{cores} threads", "ratio"],
-                 rows)
+        rows.append(
+            (f"{busy} busy core(s)", number(measure.median(one)), number(measure.median(all_cores)), times(ratio))
+        )
+    return Table(
+        f"2D train, its first 20 s [s], {cores} threads against one", ["1 thread", f"{cores} threads", "ratio"], rows
+    )
 
 
 def _wall_s(threads):
@@ -76,8 +94,10 @@ def _wall_s(threads):
 @contextlib.contextmanager
 def _busy_core(core):
     """A program that does nothing but work, on that core."""
-    program = subprocess.Popen([sys.executable, "-c", "while True: pass"],
-                               preexec_fn=lambda: os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[core]}))
+    program = subprocess.Popen(
+        [sys.executable, "-c", "while True: pass"],
+        preexec_fn=lambda: os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[core]}),
+    )
     try:
         yield
     finally:

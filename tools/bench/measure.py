@@ -31,15 +31,18 @@ class Run:
             err.seek(0)
             self.stdout = out.read()
             if process.returncode != 0:
-                raise Failed(f"{' '.join(map(str, command))} ended with exit code {process.returncode}:\n"
-                             + err.read()[-2000:])
+                raise Failed(
+                    f"{' '.join(map(str, command))} ended with exit code {process.returncode}:\n" + err.read()[-2000:]
+                )
 
 
 @contextlib.contextmanager
 def _ended_after(process, timeout_s):
     """Ends the whole group of processes when it takes too long, or when this program is interrupted."""
+
     def too_long(*_):
         raise Failed(f"a measurement took longer than {timeout_s} s")
+
     before = signal.signal(signal.SIGALRM, too_long)
     signal.alarm(timeout_s)
     try:
@@ -92,8 +95,15 @@ def peak_bytes(helper, command):
 
 def google_benchmark(program, repetitions=3, min_time_s=0.2):
     """Medians of a Google Benchmark program: {name: {counter or "cpu_time" in s: value}}."""
-    run = Run([program, "--benchmark_format=json", f"--benchmark_repetitions={repetitions}",
-               f"--benchmark_min_time={min_time_s}", "--benchmark_report_aggregates_only=true"])
+    run = Run(
+        [
+            program,
+            "--benchmark_format=json",
+            f"--benchmark_repetitions={repetitions}",
+            f"--benchmark_min_time={min_time_s}",
+            "--benchmark_report_aggregates_only=true",
+        ]
+    )
     units = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
     results = {}
     for result in json.loads(run.stdout)["benchmarks"]:

@@ -31,16 +31,18 @@ def write(machine, tables, facts):
     def with_facts(text):
         return re.sub(r"\{(\w+)\.(\w+)( %)?\}", fact, text)
 
-    blocks = {"machine": "\n".join(f"- {label}: {text}" for label, text in machine),
-              "targets": targets.table(facts).as_markdown(),
-              "missed": _missed([with_facts(item) for item in targets.missed(facts)])}
+    blocks = {
+        "machine": "\n".join(f"- {label}: {text}" for label, text in machine),
+        "targets": targets.table(facts).as_markdown(),
+        "missed": _missed([with_facts(item) for item in targets.missed(facts)]),
+    }
 
     def block(place):
         name, _, index = place.group(1).partition(" ")
         if name in blocks:
             return blocks[name]
         chosen = tables.get(name, [])
-        chosen = chosen[int(index) - 1:int(index)] if index else chosen
+        chosen = chosen[int(index) - 1 : int(index)] if index else chosen
         return "\n\n".join(table.as_markdown() for table in chosen) or f"*Not measured: `make bench ONLY={name}`.*"
 
     text = re.sub(r"^\{(\w+(?: \d)?)\}$", block, with_facts(TEMPLATE.read_text()), flags=re.MULTILINE)

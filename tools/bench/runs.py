@@ -19,13 +19,22 @@ def run():
                     repetitions,
                     lambda: workspace.train_sim(*arguments),
                     lambda: workspace.train_sim_into(folder, *arguments),
-                    lambda: workspace.train_sim_into(folder, "--csv", *arguments))
+                    lambda: workspace.train_sim_into(folder, "--csv", *arguments),
+                )
                 wall, cpu = _medians(silent)
                 bag_wall, bag_cpu = _medians(bag)
-                rows.append((f"{model}, {threads} thread(s)", number(wall), number(bag_wall),
-                             percent(_ratio(bag, silent, "wall_s") - 1), percent(_ratio(bag, silent, "cpu_s") - 1),
-                             percent(_ratio(tables, silent, "wall_s") - 1), times(70 / bag_wall),
-                             times(PAPER_WALL_S / bag_wall)))
+                rows.append(
+                    (
+                        f"{model}, {threads} thread(s)",
+                        number(wall),
+                        number(bag_wall),
+                        percent(_ratio(bag, silent, "wall_s") - 1),
+                        percent(_ratio(bag, silent, "cpu_s") - 1),
+                        percent(_ratio(tables, silent, "wall_s") - 1),
+                        times(70 / bag_wall),
+                        times(PAPER_WALL_S / bag_wall),
+                    )
+                )
                 key = f"{model}_{threads}"
                 facts[f"{key}_wall_s"] = bag_wall
                 facts[f"{key}_recording"] = _ratio(bag, silent, "wall_s") - 1

@@ -8,7 +8,7 @@ SIZES = [10, 20, 50, 100, 242, 500, 1000, 2000, 5000]
 SPREAD_SIZES = [50, 100, 242, 500, 1000, 2000]  # of the targets
 MEMORY_SIZES = [242, 2000, 10000]
 VEHICLE_STEPS = {"2d": 3e6, "ltd": 2e7}  # of a measurement
-LONGEST_S = 40.0     # the train is still moving then
+LONGEST_S = 40.0  # the train is still moving then
 
 
 def run():
@@ -54,8 +54,13 @@ def _memory(model):
 
 def _train(model, size, duration_s):
     """Arguments and settings of train_sim."""
-    sources = ", ".join(f"{{name: every 120, vehicle: {i}, application_delay_s: 0, releases: false}}"
-                        for i in range(1, size + 1, 120))
-    settings = [f"train.consist=[{{vehicle: ore_wagon, count: {size}}}]", f"brake.sources=[{sources}]",
-                "detail_vehicles=[]", f"duration_s={duration_s}"]
+    sources = ", ".join(
+        f"{{name: every 120, vehicle: {i}, application_delay_s: 0, releases: false}}" for i in range(1, size + 1, 120)
+    )
+    settings = [
+        f"train.consist=[{{vehicle: ore_wagon, count: {size}}}]",
+        f"brake.sources=[{sources}]",
+        "detail_vehicles=[]",
+        f"duration_s={duration_s}",
+    ]
     return ["--model", model, "--threads", 1], settings

@@ -5,6 +5,7 @@ import dataclasses
 @dataclasses.dataclass
 class Table:
     """A title, the names of the columns, rows of a label and as many cells of text, and a remark."""
+
     title: str
     columns: list
     rows: list
@@ -18,6 +19,7 @@ class Table:
             label, *numbers = cells
             padded = [f"{label:<{widths[0]}}", *(f"{cell:>{width}}" for cell, width in zip(numbers, widths[1:]))]
             return "| " + " | ".join(padded) + " |"
+
         rule = "|" + "-" * (widths[0] + 2) + "|" + "".join("-" * (width + 1) + ":|" for width in widths[1:])
         text = [row(lines[0]), rule, *map(row, lines[1:])]
         return "\n".join(text + (["", self.remark] if self.remark else []))
@@ -28,11 +30,13 @@ def as_text(tables):
     labels = max(len(text) for table in tables for text in [table.title, *(f"  {row[0]}" for row in table.rows)])
     lines = []
     for table in tables:
-        widths = [max(8, len(column), *(len(row[i]) for row in table.rows)) + 2
-                  for i, column in enumerate(table.columns, 1)]
+        widths = [
+            max(8, len(column), *(len(row[i]) for row in table.rows)) + 2 for i, column in enumerate(table.columns, 1)
+        ]
 
         def line(label, cells):
             return f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths))
+
         heading = line(table.title, table.columns)
         lines += ["", heading, "-" * len(heading), *(line(f"  {label}", cells) for label, *cells in table.rows)]
         if table.remark:

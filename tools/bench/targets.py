@@ -17,7 +17,10 @@ TARGETS = [
     ("all threads against one, beside one busy core", "features", "threads_beside_1", 1.1, "x"),
     ("ROS, one rank per core: overhead of an exchange", "graph", "overhead_ms", 0.05, "ms"),
     ("ROS, one rank per core: emergency stop with its bag", "graph", "ranks_wall_s", 4.0, "s"),
-    *[(f"ROS, {ranks} ranks: an exchange against MPI", "exchange", f"to_mpi_{ranks}", 1.0, "x") for ranks in (2, 8, 22)],
+    *[
+        (f"ROS, {ranks} ranks: an exchange against MPI", "exchange", f"to_mpi_{ranks}", 1.0, "x")
+        for ranks in (2, 8, 22)
+    ],
     ("ROS, 242 ranks: an exchange against MPI", "exchange", "to_mpi_242", 0.64, "x"),
     ("ROS, 242 ranks by TCP: an exchange against MPI", "exchange", "tcp_to_mpi_242", 2.5, "x"),
     ("ROS, 242 ranks: an exchange of 1 ms", "exchange", "242_ms", 1.0, "ms"),
@@ -76,8 +79,11 @@ def table(facts):
 
 def missed(facts):
     """Items for the page, one for every target that is missed."""
-    return [f"- **{what}**: {REASONS.get(fact, NO_REASON)}".replace("{cores}", str(machine.cores()))
-            for what, fact, value, limit, _ in _measured(facts) if value is not None and value > limit]
+    return [
+        f"- **{what}**: {REASONS.get(fact, NO_REASON)}".replace("{cores}", str(machine.cores()))
+        for what, fact, value, limit, _ in _measured(facts)
+        if value is not None and value > limit
+    ]
 
 
 def _measured(facts):

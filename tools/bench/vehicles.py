@@ -15,10 +15,14 @@ def run():
     ltd, ltd_shares = _ltd_exchange(vehicles, train)
     step, creep_shares = _parts(parts, operations)
     tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), ltd, _recording(per_record), step]
-    return tables, {"locked_ns": _ns(train, "exchange_locked/2d/1"), "bag_us": 1e6 * per_record["bag"]["cpu_time"],
-                    "pneumatic_share": pneumatic_ns / _ns(train, "exchange/2d/1"),
-                    "pneumatic_of_real_time": pneumatic_ns * 242 / 1e6,  # vehicles; [ns] that are simulated
-                    **ltd_shares, **creep_shares}
+    return tables, {
+        "locked_ns": _ns(train, "exchange_locked/2d/1"),
+        "bag_us": 1e6 * per_record["bag"]["cpu_time"],
+        "pneumatic_share": pneumatic_ns / _ns(train, "exchange/2d/1"),
+        "pneumatic_of_real_time": pneumatic_ns * 242 / 1e6,  # vehicles; [ns] that are simulated
+        **ltd_shares,
+        **creep_shares,
+    }
 
 
 def _ns(results, name):
@@ -36,8 +40,11 @@ def _by_instruction_set(results):
             value = _ns(results, f"{vehicle}/{instruction_set}")
             cells += [number(value), times(_ns(results, f"{vehicle}/scalar") / value)]
         rows.append((instruction_set, *cells))
-    return Table("vehicles alone, one thread [ns per step]",
-                 ["2D wagon", "to scalar", "wheels locked", "to scalar", "LTD", "to scalar"], rows)
+    return Table(
+        "vehicles alone, one thread [ns per step]",
+        ["2D wagon", "to scalar", "wheels locked", "to scalar", "LTD", "to scalar"],
+        rows,
+    )
 
 
 def _exchanges(results):
@@ -52,15 +59,22 @@ def _exchanges(results):
 
 
 def _beside(results):
-    rows = [("couplers", number(_ns(results, "couplers")), "every exchange"),
-            ("air brake", number(_ns(results, "air_brake")), "every exchange"),
-            ("pneumatic brake, emergency", number(_ns(results, "pneumatic_brake/emergency")), "every exchange"),
-            ("pneumatic brake, service and release", number(_ns(results, "pneumatic_brake/service")), "every exchange")]
+    rows = [
+        ("couplers", number(_ns(results, "couplers")), "every exchange"),
+        ("air brake", number(_ns(results, "air_brake")), "every exchange"),
+        ("pneumatic brake, emergency", number(_ns(results, "pneumatic_brake/emergency")), "every exchange"),
+        ("pneumatic brake, service and release", number(_ns(results, "pneumatic_brake/service")), "every exchange"),
+    ]
     for model in ("2d", "ltd"):
         record = _ns(results, f"record/{model}")
         rows.append((f"record with digest, {model}", number(record), "every 10 steps"))
-        rows.append((f"energies for the ledger, {model}", number(_ns(results, f"record_with_ledger/{model}") - record),
-                     "every 1000"))
+        rows.append(
+            (
+                f"energies for the ledger, {model}",
+                number(_ns(results, f"record_with_ledger/{model}") - record),
+                "every 1000",
+            )
+        )
     return Table("beside the vehicles [ns per vehicle]", ["time", "due"], rows)
 
 
@@ -81,10 +95,15 @@ def _ltd_exchange(vehicles, train):
 
 
 def _recording(results):
-    return Table("recording [us per record of 242 vehicles]", ["CPU time"], [
-        ("copy, by the run", number(1e6 * results["copy"]["cpu_time"])),
-        ("bag, by the recorder's thread", number(1e6 * results["bag"]["cpu_time"])),
-        ("CSV tables, by the recorder's thread", number(1e6 * results["tables"]["cpu_time"]))])
+    return Table(
+        "recording [us per record of 242 vehicles]",
+        ["CPU time"],
+        [
+            ("copy, by the run", number(1e6 * results["copy"]["cpu_time"])),
+            ("bag, by the recorder's thread", number(1e6 * results["bag"]["cpu_time"])),
+            ("CSV tables, by the recorder's thread", number(1e6 * results["tables"]["cpu_time"])),
+        ],
+    )
 
 
 def _parts(results, operations):
@@ -96,23 +115,37 @@ def _parts(results, operations):
         for motion in whole:
             value = _ns(results, f"{motion}/{name}")
             left[motion] -= value
-            cells += [number(value), f"{100 * value / whole[motion]:.0f} %",
-                      number(_arithmetic(operations[motion][name]))]
+            cells += [
+                number(value),
+                f"{100 * value / whole[motion]:.0f} %",
+                number(_arithmetic(operations[motion][name])),
+            ]
         rows.append((name.replace("_", " "), *cells))
     rest = []
     for motion in whole:
         counted = sum(_arithmetic(operations[motion][name]) for name in names)
-        rest += [number(left[motion]), f"{100 * left[motion] / whole[motion]:.0f} %",
-                 number(_arithmetic(operations[motion]["whole_step"]) - counted)]
+        rest += [
+            number(left[motion]),
+            f"{100 * left[motion] / whole[motion]:.0f} %",
+            number(_arithmetic(operations[motion]["whole_step"]) - counted),
+        ]
     rows.append(("the rest", *rest))
-    rows.append(("whole step", *[x for m in whole for x in (number(whole[m]), "100 %",
-                                                            number(_arithmetic(operations[m]["whole_step"])))]))
-    table = Table("parts of the wagon's step, widest lanes [ns]",
-                  ["rolling", "share", "operations", "wheels locked", "share", "operations"], rows)
+    rows.append(
+        (
+            "whole step",
+            *[x for m in whole for x in (number(whole[m]), "100 %", number(_arithmetic(operations[m]["whole_step"])))],
+        )
+    )
+    table = Table(
+        "parts of the wagon's step, widest lanes [ns]",
+        ["rolling", "share", "operations", "wheels locked", "share", "operations"],
+        rows,
+    )
     rolling = operations["rolling"]
     return table, {
         "creep_share": _ns(results, "rolling/creep_and_slip") / whole["rolling"],
-        "creep_share_of_operations": _arithmetic(rolling["creep_and_slip"]) / _arithmetic(rolling["whole_step"])}
+        "creep_share_of_operations": _arithmetic(rolling["creep_and_slip"]) / _arithmetic(rolling["whole_step"]),
+    }
 
 
 def _arithmetic(counts):

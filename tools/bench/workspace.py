@@ -32,9 +32,12 @@ def bench(name):
 
 def commit():
     """What has been measured: the commit, -dirty if a file of it but the page has changed since."""
+
     def git(*arguments):
-        return subprocess.run(["git", "-C", ROOT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                              text=True, check=True).stdout.strip()
+        return subprocess.run(
+            ["git", "-C", ROOT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=True
+        ).stdout.strip()
+
     try:
         changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/performance.md")
         return git("rev-parse", "--short=12", "HEAD") + ("-dirty" if changed else "")
@@ -43,8 +46,13 @@ def commit():
 
 
 def _train_sim(arguments, settings):
-    return [program("train_sim", "train_sim"), "run", EMERGENCY, *arguments,
-            *(word for setting in settings for word in ("--set", setting))]
+    return [
+        program("train_sim", "train_sim"),
+        "run",
+        EMERGENCY,
+        *arguments,
+        *(word for setting in settings for word in ("--set", setting)),
+    ]
 
 
 def train_sim(*arguments, settings=()):
@@ -73,9 +81,23 @@ class Launch:
             port = _free_port()
             os.environ.update(ROS_MASTER_URI=f"http://localhost:{port}", ROS_LOG_DIR=f"{folder}/log")
             begin = time.time()
-            measure.Run(["roslaunch", "-p", port, "train_brake", "train.launch", f"nodes:={nodes}", *arguments,
-                         f"out:={out}", f"record:={str(record).lower()}", f"set:={' '.join(settings)}",
-                         f"exit_status_file:={status}", "startup_timeout:=120"], timeout_s)
+            measure.Run(
+                [
+                    "roslaunch",
+                    "-p",
+                    port,
+                    "train_brake",
+                    "train.launch",
+                    f"nodes:={nodes}",
+                    *arguments,
+                    f"out:={out}",
+                    f"record:={str(record).lower()}",
+                    f"set:={' '.join(settings)}",
+                    f"exit_status_file:={status}",
+                    "startup_timeout:=120",
+                ],
+                timeout_s,
+            )
             end = time.time()
             if not status.exists() or status.read_text().strip() != "0":
                 raise measure.Failed(f"the launch with {' '.join([f'nodes:={nodes}', *arguments])} failed")
@@ -100,8 +122,21 @@ def mpi_train(ranks, settings):
         return None
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     try:
-        run = measure.Run(["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", ranks + 1,
-                           program("train_dynamics", "mpi_train"), EMERGENCY, *settings], timeout_s=120)
+        run = measure.Run(
+            [
+                "mpirun",
+                "--oversubscribe",
+                "--mca",
+                "mpi_yield_when_idle",
+                "1",
+                "-n",
+                ranks + 1,
+                program("train_dynamics", "mpi_train"),
+                EMERGENCY,
+                *settings,
+            ],
+            timeout_s=120,
+        )
     except measure.Failed as failure:  # another MPI than Open MPI has other options
         print(f"No MPI from here on: {failure}", file=sys.stderr)
         _mpi_works = False

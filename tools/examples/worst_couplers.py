@@ -18,4 +18,6 @@ for i in numpy.argsort(-largest_n)[:10]:
     time_s = couplers["max_tension_time_s" if is_tension else "max_compression_time_s"][i]
     record = numpy.searchsorted(pressure.time_s, time_s).clip(0, len(pressure) - 1)
     before, behind = pressure["cylinder_pressure_pa"][record, i : i + 2] / 1e3
-    print(f"{i + 1:10d} {(1 if is_tension else -1) * largest_n[i] / 1e3:12.1f} {time_s:8.2f} {before:10.0f} {behind:8.0f}")
+    print(
+        f"{i + 1:10d} {(1 if is_tension else -1) * largest_n[i] / 1e3:12.1f} {time_s:8.2f} {before:10.0f} {behind:8.0f}"
+    )

@@ -28,8 +28,11 @@ BAND = ((25, 135, 195), (0, 70, 110))  # colours between which those of vehicles
 def start_display():
     """Xvfb on a display of its own choice. Returns the process and the display's name."""
     reading, writing = os.pipe()
-    display = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "1600x900x24", "-nolisten", "tcp"],
-                               pass_fds=[writing], stderr=subprocess.DEVNULL)
+    display = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1600x900x24", "-nolisten", "tcp"],
+        pass_fds=[writing],
+        stderr=subprocess.DEVNULL,
+    )
     os.close(writing)
     with os.fdopen(reading) as number:
         return display, ":" + number.readline().strip()
@@ -65,7 +68,9 @@ def broad(picture, *colours, top=0):
 
 def header_of(picture):
     """The numbers over the plots."""
-    return Seen(picture, INK, top=picture.height // 30, bottom=max(broad(picture, COMPRESSION).top - picture.height // 10, 2))
+    return Seen(
+        picture, INK, top=picture.height // 30, bottom=max(broad(picture, COMPRESSION).top - picture.height // 10, 2)
+    )
 
 
 class Rviz(unittest.TestCase):
@@ -76,13 +81,26 @@ class Rviz(unittest.TestCase):
         self.addCleanup(display.wait)
         self.addCleanup(display.terminate)
         self.log = pathlib.Path(folder.name) / "log"
-        environment = dict(os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1",
-                           HOME=folder.name)  # rviz keeps its own notes there
+        environment = dict(
+            os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", HOME=folder.name
+        )  # rviz keeps its own notes there
         environment.pop("QT_QPA_PLATFORM", None)
         with open(self.log, "w") as log:
             self.launch = subprocess.Popen(
-                ["rosrun", "train_brake", "run", str(SCENARIO), folder.name + "/out", "rviz:=true",
-                 "start_paused:=true"], stdout=log, stderr=subprocess.STDOUT, env=environment, start_new_session=True)
+                [
+                    "rosrun",
+                    "train_brake",
+                    "run",
+                    str(SCENARIO),
+                    folder.name + "/out",
+                    "rviz:=true",
+                    "start_paused:=true",
+                ],
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env=environment,
+                start_new_session=True,
+            )
         self.addCleanup(self.end)
 
     def end(self):
@@ -113,7 +131,8 @@ class Rviz(unittest.TestCase):
         self.call("/train/master/set_real_time_factor", SetRealTimeFactor, 1.0)
         self.call("/train/master/resume", Trigger)
         picture = self.look_until(  # text comes a moment after what it is on
-            lambda p: broad(p, *BAND, top=broad(p, PRESSURE).bottom).width > 0.7 * p.width and header_of(p).width > 0.6 * p.width
+            lambda p: broad(p, *BAND, top=broad(p, PRESSURE).bottom).width > 0.7 * p.width
+            and header_of(p).width > 0.6 * p.width
         )
         self.keep(picture)
         width, height = picture.size

@@ -47,14 +47,22 @@ class TwoCabs(unittest.TestCase):
         self.master = rosgraph.Master("/two_cabs_test")
 
     def start(self, *words, namespace):
-        environment = dict(os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1",
-                           HOME=str(self.folder))
+        environment = dict(
+            os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", HOME=str(self.folder)
+        )
         environment.pop("ROS_NAMESPACE", None)
         if namespace:
             environment["ROS_NAMESPACE"] = namespace
         environment.pop("QT_QPA_PLATFORM", None)
-        process = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                   stdin=subprocess.DEVNULL, text=True, start_new_session=True)
+        process = subprocess.Popen(
+            words,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+        )
         self.addCleanup(process.wait)
         self.addCleanup(process.terminate)
         return process
@@ -66,14 +74,30 @@ class TwoCabs(unittest.TestCase):
     def test_nothing_of_one_train_reaches_the_other(self):
         trains, given = {}, {namespace: [] for namespace in TRAINS}
         for namespace, (name, speed_kmh) in TRAINS.items():
-            self.start("rosrun", "train_brake_examples", "hold_speed", "__name:=driver", f"_speed_kmh:={speed_kmh}",
-                       namespace=namespace)
+            self.start(
+                "rosrun",
+                "train_brake_examples",
+                "hold_speed",
+                "__name:=driver",
+                f"_speed_kmh:={speed_kmh}",
+                namespace=namespace,
+            )
             self.start("rosrun", "train_brake_examples", "cab_controls", namespace=namespace)
             trains[namespace] = self.start(
-                "rosrun", "train_brake", "run", str(SCENARIO), str(self.folder / name), "rviz:=true", "cab:=true",
-                "report:=false", "driver:=driver", "real_time_factor:=5", "start_paused:=true",
+                "rosrun",
+                "train_brake",
+                "run",
+                str(SCENARIO),
+                str(self.folder / name),
+                "rviz:=true",
+                "cab:=true",
+                "report:=false",
+                "driver:=driver",
+                "real_time_factor:=5",
+                "start_paused:=true",
                 "set:=commands=[] until=null duration_s=100 exchange_interval_s=0.005",
-                namespace=namespace.rpartition("/")[0])
+                namespace=namespace.rpartition("/")[0],
+            )
             self.assertTrue(wait_until(lambda: self.nodes(2, f"{namespace}/master/resume")), namespace)
             rospy.Subscriber(f"{namespace}/driver/given", GivenCommand, given[namespace].append)
 
@@ -110,8 +134,10 @@ class TwoCabs(unittest.TestCase):
         rviz = [n for n in self.nodes(1, "/train/live/driver_view") if "rviz" in n]
         subprocess.run(["rosnode", "kill", *rviz], check=True, stdout=subprocess.DEVNULL)
         trains["/train"].wait(60)
-        commands = {namespace: json.loads((self.folder / name / "summary.json").read_text())["commands"]
-                    for namespace, (name, _) in TRAINS.items()}
+        commands = {
+            namespace: json.loads((self.folder / name / "summary.json").read_text())["commands"]
+            for namespace, (name, _) in TRAINS.items()
+        }
         self.assertIn("apply 50 kPa", [c["command"] for c in commands["/north/train"]])
         self.assertNotIn("apply 50 kPa", [c["command"] for c in commands["/train"]])
 

@@ -32,8 +32,22 @@ class View(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.out = pathlib.Path(cls.folder.name) / "out"
-        subprocess.run(["rosrun", "train_sim", "train_sim", "run", str(SHORT_TRAIN), "--set", f"duration_s={DURATION}",
-                        "--out", str(cls.out)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                "rosrun",
+                "train_sim",
+                "train_sim",
+                "run",
+                str(SHORT_TRAIN),
+                "--set",
+                f"duration_s={DURATION}",
+                "--out",
+                str(cls.out),
+            ],
+            check=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
 
     @classmethod
     def tearDownClass(cls):
@@ -41,9 +55,11 @@ class View(unittest.TestCase):
 
     def setUp(self):
         self.markers, self.frames, self.pictures, self.selection = {}, {}, 0, None
-        for subscriber in (rospy.Subscriber("/train/view/markers", MarkerArray, self.on_markers),
-                           rospy.Subscriber("/train/view/selection", ViewSelection, self.on_selection),
-                           rospy.Subscriber("/tf", TFMessage, self.on_transforms)):
+        for subscriber in (
+            rospy.Subscriber("/train/view/markers", MarkerArray, self.on_markers),
+            rospy.Subscriber("/train/view/selection", ViewSelection, self.on_selection),
+            rospy.Subscriber("/tf", TFMessage, self.on_transforms),
+        ):
             self.addCleanup(subscriber.unregister)
 
     def on_markers(self, message):
@@ -65,14 +81,18 @@ class View(unittest.TestCase):
         return process
 
     def start_view(self, *parameters):
-        self.start("rosrun", "train_brake_rviz", "train_view", "__ns:=/train", "__name:=view", "_live:=false", *parameters)
+        self.start(
+            "rosrun", "train_brake_rviz", "train_view", "__ns:=/train", "__name:=view", "_live:=false", *parameters
+        )
         self.assertTrue(wait_until(lambda: self.markers), "no markers")
 
     def play(self, *options):
         self.start("rosbag", "play", "--quiet", "--delay=1", *options, str(self.out / "train.bag"))
 
     def words(self):
-        return [m.text for m in list(self.markers.values()) if m.action == Marker.ADD and m.type == Marker.TEXT_VIEW_FACING]
+        return [
+            m.text for m in list(self.markers.values()) if m.action == Marker.ADD and m.type == Marker.TEXT_VIEW_FACING
+        ]
 
     def shapes(self, namespace):
         marker = self.markers.get((namespace, 0))
@@ -111,9 +131,14 @@ class View(unittest.TestCase):
         self.assertEqual(("slip", 6), (self.selection.quantity, self.selection.vehicle))
         self.assertEqual((1, 4, 6), tuple(self.selection.detailed))
         select = rospy.ServiceProxy("/train/view/select", SelectView)
-        for quantity, vehicle, words in (("colour", 0, "quantity must be one of coupler_force, pressure, "
-                                          "pipe_pressure, slip, acceleration, got colour"),
-                                         ("", 7, "vehicle 7 is not in a train of 6 vehicles")):
+        for quantity, vehicle, words in (
+            (
+                "colour",
+                0,
+                "quantity must be one of coupler_force, pressure, " "pipe_pressure, slip, acceleration, got colour",
+            ),
+            ("", 7, "vehicle 7 is not in a train of 6 vehicles"),
+        ):
             reply = select(quantity, vehicle)
             self.assertEqual((False, words), (reply.success, reply.message))
         for quantity in self.selection.quantities:
@@ -127,11 +152,18 @@ class View(unittest.TestCase):
         self.assert_shown()
 
     def test_wrong_parameters(self):
-        for parameter, words in (("_quantity:=colour", "parameter quantity must be one of coupler_force, pressure"),
-                                 ("_vertical_exaggeration:=-2", "parameter vertical_exaggeration must be >= 0 and finite, got -2"),
-                                 ("_scenario:=/no/such.yaml", "/no/such.yaml")):
-            done = subprocess.run(["rosrun", "train_brake_rviz", "train_view", "__ns:=/wrong", parameter], timeout=20,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        for parameter, words in (
+            ("_quantity:=colour", "parameter quantity must be one of coupler_force, pressure"),
+            ("_vertical_exaggeration:=-2", "parameter vertical_exaggeration must be >= 0 and finite, got -2"),
+            ("_scenario:=/no/such.yaml", "/no/such.yaml"),
+        ):
+            done = subprocess.run(
+                ["rosrun", "train_brake_rviz", "train_view", "__ns:=/wrong", parameter],
+                timeout=20,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            )
             self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn(words, done.stdout)
             rospy.delete_param("/wrong")

@@ -33,7 +33,13 @@ def scenarios():
 
 
 def digest(row):
-    command = [TRAIN_SIM, "run", str(CONFIG / "scenarios" / f"{row['scenario']}.yaml"), "--set", "duration_s=" + row["duration_s"]]
+    command = [
+        TRAIN_SIM,
+        "run",
+        str(CONFIG / "scenarios" / f"{row['scenario']}.yaml"),
+        "--set",
+        "duration_s=" + row["duration_s"],
+    ]
     if row["model"]:  # otherwise the scenario's
         command += ["--model", row["model"]]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300)
@@ -56,17 +62,25 @@ def write():
 
 class Digests(unittest.TestCase):
     def test_every_shipped_scenario_has_one(self):
-        self.assertEqual(scenarios(), {row["scenario"] for row in rows()},
-                         f"add the row of a new scenario with {pathlib.Path(__file__).name} ... --write")
+        self.assertEqual(
+            scenarios(),
+            {row["scenario"] for row in rows()},
+            f"add the row of a new scenario with {pathlib.Path(__file__).name} ... --write",
+        )
 
     def test_no_bit_has_changed(self):
         changed = []
         for row in rows():
             now = digest(row)
             if now != row["state_digest"]:
-                changed.append(f"  {row['scenario']} {row['model']} {row['duration_s']} s: {row['state_digest']} -> {now}")
-        self.assertFalse(changed, "Bits changed. If that is intended, say why in the commit and in CHANGELOG.md, with the old and "
-                         "the new digests, and write digests.csv anew (--write):\n" + "\n".join(changed))
+                changed.append(
+                    f"  {row['scenario']} {row['model']} {row['duration_s']} s: {row['state_digest']} -> {now}"
+                )
+        self.assertFalse(
+            changed,
+            "Bits changed. If that is intended, say why in the commit and in CHANGELOG.md, with the old and "
+            "the new digests, and write digests.csv anew (--write):\n" + "\n".join(changed),
+        )
 
 
 if __name__ == "__main__":

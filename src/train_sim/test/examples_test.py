@@ -46,8 +46,9 @@ propulsion_resistance: {constant_n_per_kn: 0, linear_n_per_kn_kmh: 0, quadratic_
 
 
 def train_sim(*arguments):
-    return subprocess.run([TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          timeout=500)
+    return subprocess.run(
+        [TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=500
+    )
 
 
 class OwnFiles(unittest.TestCase):
@@ -74,7 +75,9 @@ class OwnFiles(unittest.TestCase):
         for i in range(400):
             heights.append(round(250 + 40 * math.sin(i / 30) + 0.05 * i, 1))
             radius = 0 if i % 7 else (600 if i % 2 else -450)
-            rows.append(f"{0.25 * i:g};{heights[-1]};{radius};{80 if i < 300 else 60};{'Zell' if i == 200 else ''};\"m, ok\"")
+            rows.append(
+                f"{0.25 * i:g};{heights[-1]};{radius};{80 if i < 300 else 60};{'Zell' if i == 200 else ''};\"m, ok\""
+            )
         line = self.write("line.csv", "\n".join(rows) + "\n")
         plot, table = self.here / "line.svg", self.here / "again.csv"
         done = train_sim("route", line, "--plot", plot, "--csv", table)
@@ -82,7 +85,9 @@ class OwnFiles(unittest.TestCase):
         self.assertIn("0.000 km to 99.750 km", done.stdout)
         self.assertIn("Zell at 50.000 km", done.stdout)
         rises = [b - a for a, b in zip(heights, heights[1:])]
-        self.assertIn(f"up {sum(r for r in rises if r > 0):.1f} m, down {-sum(r for r in rises if r < 0):.1f} m", done.stdout)
+        self.assertIn(
+            f"up {sum(r for r in rises if r > 0):.1f} m, down {-sum(r for r in rises if r < 0):.1f} m", done.stdout
+        )
         self.assertIn("450 m radius to the left", done.stdout)
         self.assertIn("<polyline", plot.read_text())
         self.assertIn("Zell", plot.read_text())
@@ -95,19 +100,34 @@ class OwnFiles(unittest.TestCase):
     def test_a_train_falls_down_the_route_of_a_table(self):
         # Without resistance and brake: from 10 m/s down 1 % on the level of energy, at the end on level track.
         self.write("line.csv", "grade_permille,position_m\n0,-1000\n-10,0\n0,500\n0,2000\n")
-        scenario = self.write("mine.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, load_fraction: 0.5}]}" % COUPLER, start=-50))
+        scenario = self.write(
+            "mine.yaml",
+            SCENARIO.format(
+                train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, load_fraction: 0.5}]}" % COUPLER,
+                start=-50,
+            ),
+        )
         summary, _ = self.run_ok(scenario, "--set", "commands=[]", "--set", "duration_s=60")
-        self.assertAlmostEqual(3.6 * math.sqrt(10**2 + 2 * 9.81 * 5.0), summary["final_speed_kmh"]["mean"], delta=0.01)
+        self.assertAlmostEqual(
+            3.6 * math.sqrt(10**2 + 2 * 9.81 * 5.0), summary["final_speed_kmh"]["mean"], delta=0.01
+        )
 
     def test_a_consist_by_rows_is_that_by_lists(self):
         self.write("line.csv", "position_m,grade_permille\n-1000,0\n5000,0\n")
-        self.write("groups.csv", "count,vehicle,load_fraction,note\n2,./simple.yaml,1,\"full, front\"\n3,./simple.yaml,0,\n")
-        rows = self.write("rows.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: groups.csv}" % COUPLER, start=0))
-        lists = self.write("lists.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, count: 2}, {vehicle: ./simple.yaml, count: 3, "
-                  "load_fraction: 0}]}" % COUPLER, start=0))
+        self.write(
+            "groups.csv", 'count,vehicle,load_fraction,note\n2,./simple.yaml,1,"full, front"\n3,./simple.yaml,0,\n'
+        )
+        rows = self.write(
+            "rows.yaml", SCENARIO.format(train="{name: t, connection: %s, consist: groups.csv}" % COUPLER, start=0)
+        )
+        lists = self.write(
+            "lists.yaml",
+            SCENARIO.format(
+                train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, count: 2}, {vehicle: ./simple.yaml, count: 3, "
+                "load_fraction: 0}]}" % COUPLER,
+                start=0,
+            ),
+        )
         one, two = self.run_ok(rows)[0], self.run_ok(lists)[0]
         self.assertEqual(5, one["vehicles"])
         self.assertEqual(one["state_digest"], two["state_digest"])
@@ -116,21 +136,31 @@ class OwnFiles(unittest.TestCase):
 
     def test_errors_name_file_line_and_column(self):
         self.write("line.csv", "position_m,grade_permile,radius_m\n0,1,0\n250,2,30\n200,,0\n")
-        self.write("groups.csv", "vehicle,count,load_fraction\n./simple.yaml,two,1\n./complex.yaml,1,1\n./simple.yaml,1,1.2\n")
-        done = train_sim("run", self.write("mine.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: groups.csv}" % COUPLER, start=0)))
+        self.write(
+            "groups.csv", "vehicle,count,load_fraction\n./simple.yaml,two,1\n./complex.yaml,1,1\n./simple.yaml,1,1.2\n"
+        )
+        done = train_sim(
+            "run",
+            self.write(
+                "mine.yaml", SCENARIO.format(train="{name: t, connection: %s, consist: groups.csv}" % COUPLER, start=0)
+            ),
+        )
         self.assertEqual(2, done.returncode)
-        for words in (r"line.csv:1: \S*track.points\[0\].grade_permile is not a known key; did you mean grade_permille\?",
-                      r"line.csv:3: \S*track.points\[1\].radius_m must be at least 50 m",
-                      r"groups.csv:2: \S*train.consist\[0\].count must be a (whole )?number, got 'two'",
-                      r"groups.csv:3: \S*train.consist\[1\].vehicle names the file './complex.yaml'",
-                      r"groups.csv:4: \S*load_fraction must be in \[0, 1\], got 1.2"):
+        for words in (
+            r"line.csv:1: \S*track.points\[0\].grade_permile is not a known key; did you mean grade_permille\?",
+            r"line.csv:3: \S*track.points\[1\].radius_m must be at least 50 m",
+            r"groups.csv:2: \S*train.consist\[0\].count must be a (whole )?number, got 'two'",
+            r"groups.csv:3: \S*train.consist\[1\].vehicle names the file './complex.yaml'",
+            r"groups.csv:4: \S*load_fraction must be in \[0, 1\], got 1.2",
+        ):
             self.assertRegex(done.stderr, words)
 
     def test_one_mass_has_no_2d_model(self):
         self.write("line.csv", "position_m,grade_permille\n-1000,0\n5000,0\n")
-        scenario = self.write("mine.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml}]}" % COUPLER, start=0))
+        scenario = self.write(
+            "mine.yaml",
+            SCENARIO.format(train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml}]}" % COUPLER, start=0),
+        )
         done = train_sim("run", scenario, "--model", "2d")
         self.assertEqual(2, done.returncode)
         self.assertIn("vehicle.mass_kg is all that the vehicle has, but the 2d model needs its bodies", done.stderr)
@@ -140,8 +170,10 @@ class OwnFiles(unittest.TestCase):
 
     def test_a_train_that_leaves_its_route_is_told(self):
         self.write("line.csv", "position_m,grade_permille\n-100,0\n40,0\n")
-        scenario = self.write("mine.yaml", SCENARIO.format(
-            train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml}]}" % COUPLER, start=0))
+        scenario = self.write(
+            "mine.yaml",
+            SCENARIO.format(train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml}]}" % COUPLER, start=0),
+        )
         summary, told = self.run_ok(scenario, "--set", "commands=[]")
         self.assertAlmostEqual(3.4, summary["left_route_s"], delta=0.11)  # 40 m less half of 12 m at 10 m/s
         self.assertIn("beyond an end of its route", told)
@@ -163,8 +195,20 @@ class Examples(unittest.TestCase):
         for scenario in sorted((CONFIG / "scenarios").glob("*.yaml")):
             with self.subTest(scenario.name):
                 checked = yaml.safe_load(scenario.read_text())
-                done = train_sim("run", scenario, "--model", "ltd", "--set", "duration_s=4", "--set", "record_interval_s=0.1",
-                                 "--set", "ledger_interval_s=1", "--set", "detail_vehicles=[]")
+                done = train_sim(
+                    "run",
+                    scenario,
+                    "--model",
+                    "ltd",
+                    "--set",
+                    "duration_s=4",
+                    "--set",
+                    "record_interval_s=0.1",
+                    "--set",
+                    "ledger_interval_s=1",
+                    "--set",
+                    "detail_vehicles=[]",
+                )
                 self.assertEqual(0, done.returncode, done.stderr)
                 summary = json.loads(done.stdout)
                 self.assertEqual(checked["name"], summary["scenario"])

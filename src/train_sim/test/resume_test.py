@@ -27,8 +27,14 @@ RUN = [EMERGENCY, "--set", "duration_s=30", "--checkpoint-interval", "2"]
 
 
 def train_sim(*arguments, **options):
-    return subprocess.run([TRAIN_SIM, "run", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, timeout=300, **options)
+    return subprocess.run(
+        [TRAIN_SIM, "run", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        timeout=300,
+        **options,
+    )
 
 
 def messages(bag_file):
@@ -39,13 +45,15 @@ def messages(bag_file):
 
 def with_checksum(content):
     """A forged checkpoint: the checksum guards against accidents only."""
-    words, mask, state = bytes(content[:-8]), (1 << 64) - 1, 0x9e3779b97f4a7c15
+    words, mask, state = bytes(content[:-8]), (1 << 64) - 1, 0x9E3779B97F4A7C15
+
     def mix(x):
-        x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93 & mask
-        x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93 & mask
+        x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93 & mask
+        x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93 & mask
         return x ^ (x >> 32)
+
     for at in range(0, len(words), 8):
-        state = mix(state ^ int.from_bytes(words[at:at + 8], "little"))
+        state = mix(state ^ int.from_bytes(words[at : at + 8], "little"))
     return words + mix(state ^ len(words)).to_bytes(8, "little")
 
 
@@ -67,8 +75,11 @@ class ResumeTest(unittest.TestCase):
 
     def break_off(self, how, *arguments):
         """Runs until there is a checkpoint and a little more, and ends it by a signal."""
-        process = subprocess.Popen([TRAIN_SIM, "run", *RUN, "--out", str(self.out), *arguments],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            [TRAIN_SIM, "run", *RUN, "--out", str(self.out), *arguments],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         deadline = time.monotonic() + 60
         while not (self.out / "checkpoint").exists() and time.monotonic() < deadline:
             time.sleep(0.01)
@@ -107,8 +118,11 @@ class ResumeTest(unittest.TestCase):
     def test_broken_off_again_and_again(self):
         self.break_off(signal.SIGKILL)
         for _ in range(3):
-            process = subprocess.Popen([TRAIN_SIM, "run", "--resume", str(self.out), "--checkpoint-interval", "1"],
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            process = subprocess.Popen(
+                [TRAIN_SIM, "run", "--resume", str(self.out), "--checkpoint-interval", "1"],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
             time.sleep(0.3)
             process.kill()
             process.wait()
@@ -136,7 +150,9 @@ class ResumeTest(unittest.TestCase):
         self.assertIn("from %g s, where it left another run" % summary["resumed_at_s"], verified.stdout)
         # One bag: up to the checkpoint that of the run, from there on another.
         at_ns = round(1e9 * summary["resumed_at_s"])
-        states = [[m for m in messages(folder / "train.bag") if m[0] == "/train/state"] for folder in (self.whole, branch)]
+        states = [
+            [m for m in messages(folder / "train.bag") if m[0] == "/train/state"] for folder in (self.whole, branch)
+        ]
         self.assertEqual(len(states[0]), len(states[1]))
         for a, b in zip(*states):
             self.assertEqual(a[2], b[2])
@@ -155,14 +171,19 @@ class ResumeTest(unittest.TestCase):
         self.refused("give a scenario, or --resume", "--resume", self.whole, EMERGENCY)
         self.refused("give a scenario, or --resume")
         self.refused("with the tables that it began with", "--resume", self.whole, "--csv")
-        for change, text in (("dt_s=0.0005", "dt_s must stay 0.001"), ("model=ltd", "model must stay 2d"),
-                             ("train.consist[1].count=118", "number of vehicles must stay 242"),
-                             ("detail_vehicles=[7]", "detail_vehicles must stay"),
-                             ("initial_speed_kmh=60", "initial_speed_kmh must stay 80"),
-                             ("initial_slack=bunched", "initial_slack must stay"),
-                             ("commands=[{time_s: 3, kind: emergency}]",
-                              "commands up to 30 s must stay (2 s: emergency) when a run is resumed, got (3 s: emergency)"),
-                             ("duration_s=abc", "duration_s must be")):
+        for change, text in (
+            ("dt_s=0.0005", "dt_s must stay 0.001"),
+            ("model=ltd", "model must stay 2d"),
+            ("train.consist[1].count=118", "number of vehicles must stay 242"),
+            ("detail_vehicles=[7]", "detail_vehicles must stay"),
+            ("initial_speed_kmh=60", "initial_speed_kmh must stay 80"),
+            ("initial_slack=bunched", "initial_slack must stay"),
+            (
+                "commands=[{time_s: 3, kind: emergency}]",
+                "commands up to 30 s must stay (2 s: emergency) when a run is resumed, got (3 s: emergency)",
+            ),
+            ("duration_s=abc", "duration_s must be"),
+        ):
             self.refused(text, "--resume", self.whole, "--set", change, "--out", self.out)
 
     def test_a_changed_or_damaged_folder_is_refused(self):
@@ -188,18 +209,21 @@ class ResumeTest(unittest.TestCase):
     def test_records_that_are_not_those_of_the_checkpoint_are_refused(self):
         shutil.copytree(self.whole, self.out)
         longer = self.folder / "longer"
-        for name, text in (("train.bag", "is not the bag that the checkpoint is of"),
-                           ("pressures.csv", "is not the table that the checkpoint is of"),
-                           ("wagon_100.csv", "is not the table that the checkpoint is of")):
+        for name, text in (
+            ("train.bag", "is not the bag that the checkpoint is of"),
+            ("pressures.csv", "is not the table that the checkpoint is of"),
+            ("wagon_100.csv", "is not the table that the checkpoint is of"),
+        ):
             file = self.out / name
             content = bytearray(file.read_bytes())
             content[len(content) // 2] ^= 1
             file.write_bytes(content)
             self.refused(text, "--resume", self.out, "--set", "duration_s=31", "--out", longer)
             content[len(content) // 2] ^= 1
-            file.write_bytes(content[:len(content) // 2])
-            self.refused("shorter than it was at the checkpoint", "--resume", self.out, "--set", "duration_s=31",
-                         "--out", longer)
+            file.write_bytes(content[: len(content) // 2])
+            self.refused(
+                "shorter than it was at the checkpoint", "--resume", self.out, "--set", "duration_s=31", "--out", longer
+            )
             file.unlink()
             self.refused(f"{name}", "--resume", self.out, "--set", "duration_s=31", "--out", longer)
             file.write_bytes(content)
@@ -264,9 +288,13 @@ class ResumeTest(unittest.TestCase):
         def small_files():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1000000, 1000000))
+
         done = train_sim(*RUN, "--out", self.out, "--go-on-without-records", preexec_fn=small_files)
         self.assertEqual(1, done.returncode)
-        self.assertIn("train.bag (ulimit -f limits the size of files): File too large: the run goes on without records", done.stderr)
+        self.assertIn(
+            "train.bag (ulimit -f limits the size of files): File too large: the run goes on without records",
+            done.stderr,
+        )
         self.assertIn("could not be written", done.stderr.splitlines()[-1])
         summary = json.loads(done.stdout)
         self.assertTrue(summary["complete"])

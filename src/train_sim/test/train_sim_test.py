@@ -32,8 +32,9 @@ SHORT = ["--set", "duration_s=0.5"]
 
 
 def train_sim(*arguments):
-    return subprocess.run([TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          timeout=300)
+    return subprocess.run(
+        [TRAIN_SIM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300
+    )
 
 
 class TrainSimTest(unittest.TestCase):
@@ -67,7 +68,9 @@ class TrainSimTest(unittest.TestCase):
         for element in ("brake_shoes", "draft_gears", "draw_bars", "wheel_rail_creep", "air_drag"):
             self.assertIn(element, energy["dissipated_j"])
         self.assertLess(abs(energy["residual_j"]), 1e-6 * energy["initial_j"])
-        balance = energy["initial_j"] + energy["gravity_work_j"] - energy["final_j"] - sum(energy["dissipated_j"].values())
+        balance = (
+            energy["initial_j"] + energy["gravity_work_j"] - energy["final_j"] - sum(energy["dissipated_j"].values())
+        )
         self.assertLess(abs(balance), 1e-6 * energy["initial_j"])
         self.assertRegex(summary["state_digest"], "^[0-9a-f]{16}$")
 
@@ -84,12 +87,16 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(2, train_sim("run", "--resume", self.out, "--twin").returncode)
 
     def test_check_tells_programs_what_a_scenario_is(self):
-        odd = self.write("odd.yaml", f"base: {EMERGENCY}\nname: odd\ndescription: 'a train of 7 vehicle(s), \"quoted\"'\n")
+        odd = self.write(
+            "odd.yaml", f"base: {EMERGENCY}\nname: odd\ndescription: 'a train of 7 vehicle(s), \"quoted\"'\n"
+        )
         done = train_sim("check", "--json", odd, "--model", "ltd")
         self.assertEqual(0, done.returncode, done.stderr)
         told = json.loads(done.stdout)
-        self.assertEqual((242, "ltd", 'a train of 7 vehicle(s), "quoted"', 70),
-                         (told["vehicles"], told["model"], told["description"], told["duration_s"]))
+        self.assertEqual(
+            (242, "ltd", 'a train of 7 vehicle(s), "quoted"', 70),
+            (told["vehicles"], told["model"], told["description"], told["duration_s"]),
+        )
         self.assertAlmostEqual(242 * 13.0, told["length_m"], delta=1000)
         self.assertGreater(told["bag_bytes"], 1e6)
         self.assertEqual(2, train_sim("check", "--json", "/nowhere.yaml").returncode)
@@ -146,8 +153,9 @@ class TrainSimTest(unittest.TestCase):
             self.assertEqual(first["state_digest"], again["state_digest"])
         resolved = self.run_ok(self.out / "config.yaml", "--out", str(self.out) + "2")
         self.assertEqual(first["state_digest"], resolved["state_digest"])
-        self.assertEqual((self.out / "config.yaml").read_text(),
-                         (pathlib.Path(str(self.out) + "2") / "config.yaml").read_text())
+        self.assertEqual(
+            (self.out / "config.yaml").read_text(), (pathlib.Path(str(self.out) + "2") / "config.yaml").read_text()
+        )
         other = self.run_ok(EMERGENCY, "--set", "duration_s=0.3", "--set", "initial_speed_kmh=80.0000001")
         self.assertNotEqual(first["state_digest"], other["state_digest"])
 
@@ -181,8 +189,10 @@ class TrainSimTest(unittest.TestCase):
         with open(self.out / "couplers.csv", newline="") as table:
             rows = list(csv.DictReader(table))
         self.assertEqual(241, len(rows))
-        self.assertEqual({"connection", "max_tension_n", "max_tension_time_s", "max_compression_n",
-                          "max_compression_time_s"}, set(rows[0]))
+        self.assertEqual(
+            {"connection", "max_tension_n", "max_tension_time_s", "max_compression_n", "max_compression_time_s"},
+            set(rows[0]),
+        )
         with open(self.out / "vehicles.csv", newline="") as table:
             self.assertEqual(242, len(list(csv.DictReader(table))))
         with open(self.out / "train_history.csv", newline="") as table:
@@ -190,9 +200,15 @@ class TrainSimTest(unittest.TestCase):
         with open(self.out / "wagon_100.csv", newline="") as table:
             rows = list(csv.DictReader(table))
         self.assertEqual(11, len(rows))
-        for column in ("normal_force_wheelset_1_n", "creepage_wheelset_4", "creep_force_wheelset_1_n",
-                       "shoe_force_wheelset_1_n", "carbody_pitch_rad", "spring_deflection_front_front_m",
-                       "wedge_friction_rear_rear_n"):
+        for column in (
+            "normal_force_wheelset_1_n",
+            "creepage_wheelset_4",
+            "creep_force_wheelset_1_n",
+            "shoe_force_wheelset_1_n",
+            "carbody_pitch_rad",
+            "spring_deflection_front_front_m",
+            "wedge_friction_rear_rear_n",
+        ):
             self.assertIn(column, rows[0])
         self.assertAlmostEqual(0.0585, float(rows[-1]["spring_deflection_front_front_m"]), places=4)
 
@@ -201,8 +217,9 @@ class TrainSimTest(unittest.TestCase):
         settings = ["--set", "duration_s=6"]
         ltd = self.run_ok(EMERGENCY, "--model", "ltd", "--csv", "--out", self.out, *settings)
         table = self.out / "pressures.csv"
-        again = self.run_ok(EMERGENCY, "--model", "ltd", *settings, "--set", f"pressure_table={table}", "--out",
-                            str(self.out) + "2")
+        again = self.run_ok(
+            EMERGENCY, "--model", "ltd", *settings, "--set", f"pressure_table={table}", "--out", str(self.out) + "2"
+        )
         # Linear between samples 10 ms apart: off by beta^2 p dt^2 / 8 = 0.3 Pa of 430 kPa.
         self.assertAlmostEqual(ltd["final_speed_kmh"]["mean"], again["final_speed_kmh"]["mean"], delta=1e-6)
         resolved = self.run_ok(pathlib.Path(str(self.out) + "2") / "config.yaml")
@@ -211,20 +228,39 @@ class TrainSimTest(unittest.TestCase):
     def test_values_in_another_unit_are_refused(self):
         """Whatever key has a unit: a thousand times too much or too little is no train's."""
         vehicle, gear = "train.consist[0].vehicle", "train.connection.draft_gear"
-        wrong = [("brake.emergency.cylinder_pressure_kpa", 430e3), ("brake.emergency.wave_speed_mps", 0.25),
-                 ("brake.service.reduction_kpa[0]", 0.05), (f"{gear}.slack_m", 10), (f"{gear}.travel_m", 83),
-                 (f"{gear}.preload_n", 18.8), (f"{gear}.spring_stiffness_n_per_m", 40e3),
-                 (f"{vehicle}.wheelset.mass_kg", 1.73), (f"{vehicle}.carbody.mass_kg", 147.6), (f"{vehicle}.length_m", 10.5e3),
-                 (f"{vehicle}.propulsion_resistance.constant_n_per_kn", 920), (f"{vehicle}.coupler_height_m", 850),
-                 (f"{vehicle}.wheel_rail.hertz.youngs_modulus_pa", 208), (f"{vehicle}.spring_nest.outer_stiffness_n_per_m", 1590),
-                 (f"{vehicle}.wheelset.pitch_inertia_kgm2", 679e3), (f"{vehicle}.wheel_rail.shear_modulus_pa", 84e3)]
+        wrong = [
+            ("brake.emergency.cylinder_pressure_kpa", 430e3),
+            ("brake.emergency.wave_speed_mps", 0.25),
+            ("brake.service.reduction_kpa[0]", 0.05),
+            (f"{gear}.slack_m", 10),
+            (f"{gear}.travel_m", 83),
+            (f"{gear}.preload_n", 18.8),
+            (f"{gear}.spring_stiffness_n_per_m", 40e3),
+            (f"{vehicle}.wheelset.mass_kg", 1.73),
+            (f"{vehicle}.carbody.mass_kg", 147.6),
+            (f"{vehicle}.length_m", 10.5e3),
+            (f"{vehicle}.propulsion_resistance.constant_n_per_kn", 920),
+            (f"{vehicle}.coupler_height_m", 850),
+            (f"{vehicle}.wheel_rail.hertz.youngs_modulus_pa", 208),
+            (f"{vehicle}.spring_nest.outer_stiffness_n_per_m", 1590),
+            (f"{vehicle}.wheelset.pitch_inertia_kgm2", 679e3),
+            (f"{vehicle}.wheel_rail.shear_modulus_pa", 84e3),
+        ]
         done = train_sim("check", EMERGENCY, *(word for path, value in wrong for word in ("--set", f"{path}={value}")))
         self.assertEqual(2, done.returncode)
         for path, value in wrong:
-            self.assertRegex(done.stderr, rf"\n?.*: {re.escape(path)} must be at (most|least) [\d.e+]+ .* in size: no train has ", path)
-        self.assertIn("carbody.mass_kg must be at least 500 kg in size: no train has less; is it in kg?, got 147.6", done.stderr)
+            self.assertRegex(
+                done.stderr,
+                rf"\n?.*: {re.escape(path)} must be at (most|least) [\d.e+]+ .* in size: no train has ",
+                path,
+            )
+        self.assertIn(
+            "carbody.mass_kg must be at least 500 kg in size: no train has less; is it in kg?, got 147.6", done.stderr
+        )
         for radius in ("1e-154", "460", "0.0485"):
-            done = train_sim("check", EMERGENCY, "--model", "ltd", "--set", f"{vehicle}.wheelset.wheel_radius_m={radius}")
+            done = train_sim(
+                "check", EMERGENCY, "--model", "ltd", "--set", f"{vehicle}.wheelset.wheel_radius_m={radius}"
+            )
             self.assertEqual(2, done.returncode)
             self.assertIn("wheel_radius_m must be at ", done.stderr)
 
@@ -233,7 +269,9 @@ class TrainSimTest(unittest.TestCase):
         done = train_sim("check", DIP, "--set", f"pressure_table={table}")
         self.assertEqual(0, done.returncode, done.stderr)
         self.assertIn("table.csv: begins at 0.1 s: until then the pressures of its first row hold", done.stderr)
-        self.assertRegex(done.stderr, r"table.csv: ends at 0.3 s of [\d.]+ s: from then on the pressures of its last row hold")
+        self.assertRegex(
+            done.stderr, r"table.csv: ends at 0.3 s of [\d.]+ s: from then on the pressures of its last row hold"
+        )
         self.assertIn("table.csv: 2 of its columns are not used: the train has 1 vehicle\n", done.stderr)
         table.write_text("time_s,vehicle_1_pa\n0,0\n100,50000\n")
         self.assertNotIn("table.csv", train_sim("check", DIP, "--set", f"pressure_table={table}").stderr)
@@ -242,18 +280,25 @@ class TrainSimTest(unittest.TestCase):
         table = self.write("table.csv", "time_s,vehicle_1_pa\n0,0\n")
         done = train_sim("check", EMERGENCY, "--set", f"pressure_table={table}")
         self.assertEqual(2, done.returncode)
-        self.assertIn("table.csv:1: has no columns vehicle_2_pa, vehicle_3_pa, vehicle_4_pa, ...: of 242 vehicles 241 have no pressures",
-                      done.stderr)
+        self.assertIn(
+            "table.csv:1: has no columns vehicle_2_pa, vehicle_3_pa, vehicle_4_pa, ...: of 242 vehicles 241 have no pressures",
+            done.stderr,
+        )
         self.assertEqual(1, len([line for line in done.stderr.splitlines() if "vehicle_" in line]), done.stderr)
         table.write_text("time_s,vehicle_1_pa\n0,0\n2,5\n1,-7\n1,4e8\n")
         errors = train_sim("check", DIP, "--set", f"pressure_table={table}").stderr
-        for text in ("table.csv:4: time_s must be later than that of the row before, 2 s, got 1",
-                     "table.csv:4: vehicle_1_pa must be in [0, 3000000] Pa, got -7",
-                     "table.csv:5: time_s must be later", "table.csv:5: vehicle_1_pa must be in [0, 3000000] Pa, got 400000000"):
+        for text in (
+            "table.csv:4: time_s must be later than that of the row before, 2 s, got 1",
+            "table.csv:4: vehicle_1_pa must be in [0, 3000000] Pa, got -7",
+            "table.csv:5: time_s must be later",
+            "table.csv:5: vehicle_1_pa must be in [0, 3000000] Pa, got 400000000",
+        ):
             self.assertIn(text, errors)
         table.write_text("time_s,vehicle_1_pa\n0,0\n0,5,100,25\n")
-        self.assertIn("table.csv:3: has 4 values, but the header names 2 columns; decimals take a point",
-                      train_sim("check", DIP, "--set", f"pressure_table={table}").stderr)
+        self.assertIn(
+            "table.csv:3: has 4 values, but the header names 2 columns; decimals take a point",
+            train_sim("check", DIP, "--set", f"pressure_table={table}").stderr,
+        )
 
     def test_commands_behind_the_end_are_told(self):
         done = train_sim("check", EMERGENCY, "--set", "duration_s=1")
@@ -261,9 +306,12 @@ class TrainSimTest(unittest.TestCase):
         self.assertNotIn("never given", train_sim("check", EMERGENCY, "--set", "duration_s=3").stderr)
 
     def test_misspelt_commands_and_options_get_the_likely_one(self):
-        for arguments, text in ((["runn", EMERGENCY], "there is no command runn; did you mean run?"),
-                                (["verfy"], "there is no command verfy; did you mean verify?"), (["fly"], "there is no command fly"),
-                                (["run", EMERGENCY, "--tread", "2"], "--tread: did you mean --threads?")):
+        for arguments, text in (
+            (["runn", EMERGENCY], "there is no command runn; did you mean run?"),
+            (["verfy"], "there is no command verfy; did you mean verify?"),
+            (["fly"], "there is no command fly"),
+            (["run", EMERGENCY, "--tread", "2"], "--tread: did you mean --threads?"),
+        ):
             done = train_sim(*arguments)
             self.assertEqual(2, done.returncode)
             self.assertIn(text, done.stderr)
@@ -288,15 +336,30 @@ class TrainSimTest(unittest.TestCase):
 
     def test_a_replaced_result_is_told(self):
         self.assertNotIn("replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
-        self.assertIn("out held the results of a run, which are replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
+        self.assertIn(
+            "out held the results of a run, which are replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr
+        )
 
     def test_what_arguments_hold_commands_no_terminal(self):
-        for arguments in (["run", "a\x1b[31mb.yaml"], ["\x1b[2J"], ["run", EMERGENCY, "--\x1b[2Jx"], ["verify", "\x1b]0;t\x07"],
-                          ["run", EMERGENCY, "--set", "name=\"\\e[31m\""], ["check", EMERGENCY, "--set", "\x9b=1"],
-                          ["run", "--resume", "\u202etxt"]):
+        for arguments in (
+            ["run", "a\x1b[31mb.yaml"],
+            ["\x1b[2J"],
+            ["run", EMERGENCY, "--\x1b[2Jx"],
+            ["verify", "\x1b]0;t\x07"],
+            ["run", EMERGENCY, "--set", 'name="\\e[31m"'],
+            ["check", EMERGENCY, "--set", "\x9b=1"],
+            ["run", "--resume", "\u202etxt"],
+        ):
             done = train_sim(*arguments)
             self.assertIn(done.returncode, (1, 2, 6), arguments)
-            self.assertEqual([], [c for c in done.stdout + done.stderr if (ord(c) < 32 and c not in "\n\t") or ord(c) in (0x7f, 0x9b, 0x202e)])
+            self.assertEqual(
+                [],
+                [
+                    c
+                    for c in done.stdout + done.stderr
+                    if (ord(c) < 32 and c not in "\n\t") or ord(c) in (0x7F, 0x9B, 0x202E)
+                ],
+            )
 
     def test_pressure_table_errors(self):
         table = self.write("table.csv", "time_s,vehicle_1_pa\n0,0\n1,x\n")
@@ -309,7 +372,9 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("vehicle_1_pa", done.stderr)
 
     def test_bad_configuration_ends_with_2_and_writes_nothing(self):
-        scenario = self.write("bad.yaml", "base: %s\ndt: 0.001\nduration_s: -1\ninitial_speed_kmh: 80 km/h\n" % EMERGENCY)
+        scenario = self.write(
+            "bad.yaml", "base: %s\ndt: 0.001\nduration_s: -1\ninitial_speed_kmh: 80 km/h\n" % EMERGENCY
+        )
         done = train_sim("run", scenario, "--out", self.out)
         self.assertEqual(2, done.returncode)
         self.assertEqual("", done.stdout)
@@ -321,16 +386,21 @@ class TrainSimTest(unittest.TestCase):
     def test_rules_between_keys(self):
         in_train = "in [1, 242], or in [-242, -1] from the rear, because the train has 242 vehicles"
         lateral_radius = "train.consist[0].vehicle.wheel_rail.hertz.wheel_lateral_radius_m"
-        for change, complaint in (("exchange_interval_s=0.0015",
-                                   "exchange_interval_s must be a multiple of dt_s (0.001), got 0.0015"),
-                                  ("record_interval_s=0.0105", "record_interval_s must be a multiple"),
-                                  ("detail_vehicles=[243]", f"detail_vehicles[0] must be {in_train}, got 243"),
-                                  ("brake.sources[1].vehicle=300",
-                                   f"brake.sources[1].vehicle must be {in_train} (mid-train locomotive), got 300"),
-                                  ("commands=[{time_s: 1, kind: apply, reduction_kpa: 20}]",
-                                   "commands[0].reduction_kpa must be in [50, 170] (brake.service.reduction_kpa), got 20"),
-                                  ("integrator=newmark", "integrator must be leapfrog for the 2d model"),
-                                  (f"{lateral_radius}=-0.0801", "train.consist[0].vehicle.wheel_rail.hertz gives no")):
+        for change, complaint in (
+            ("exchange_interval_s=0.0015", "exchange_interval_s must be a multiple of dt_s (0.001), got 0.0015"),
+            ("record_interval_s=0.0105", "record_interval_s must be a multiple"),
+            ("detail_vehicles=[243]", f"detail_vehicles[0] must be {in_train}, got 243"),
+            (
+                "brake.sources[1].vehicle=300",
+                f"brake.sources[1].vehicle must be {in_train} (mid-train locomotive), got 300",
+            ),
+            (
+                "commands=[{time_s: 1, kind: apply, reduction_kpa: 20}]",
+                "commands[0].reduction_kpa must be in [50, 170] (brake.service.reduction_kpa), got 20",
+            ),
+            ("integrator=newmark", "integrator must be leapfrog for the 2d model"),
+            (f"{lateral_radius}=-0.0801", "train.consist[0].vehicle.wheel_rail.hertz gives no"),
+        ):
             done = train_sim("check", EMERGENCY, "--set", change)
             self.assertEqual(2, done.returncode, change)
             self.assertIn(complaint, done.stderr)
@@ -356,8 +426,11 @@ class TrainSimTest(unittest.TestCase):
         lines, warnings = self.check(EMERGENCY)
         self.assertEqual("", warnings)
         self.assertEqual("1 ms; ore_wagon stable to 1.745 ms", lines["step"])
-        self.assertEqual("1 ms; calibrated stable to 6.61 ms at 900 kN, draw_bar stable to 23.2 ms; it changes the "
-                         "paper's coupler forces by up to 1.3 kN", lines["exchange"])
+        self.assertEqual(
+            "1 ms; calibrated stable to 6.61 ms at 900 kN, draw_bar stable to 23.2 ms; it changes the "
+            "paper's coupler forces by up to 1.3 kN",
+            lines["exchange"],
+        )
         self.assertRegex(lines["wall time"], r"^about [\d.]+ s with \d+ thread\(s\), [\d.]+ x real time$")
         self.assertRegex(lines["memory"], r"^about \d+ MB$")
         lines, warnings = self.check(DIP)
@@ -366,12 +439,16 @@ class TrainSimTest(unittest.TestCase):
     def test_check_warns_with_place_and_remedy(self):
         scenario = self.write("mine.yaml", f"base: {EMERGENCY}\nexchange_interval_s: 0.01\n")
         _, warnings = self.check(scenario)
-        self.assertIn("mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest that train.connection stands",
-                      warnings)
+        self.assertIn(
+            "mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest that train.connection stands",
+            warnings,
+        )
         self.assertIn("take a shorter one", warnings)
         lines, warnings = self.check(EMERGENCY, "--nodes", 300, "--machines", 2)
         self.assertIn("warning: --nodes 300: the train has 242 vehicles; take at most as many nodes", warnings)
-        self.assertRegex(warnings, r"--nodes 300: 150 nodes share \d+ cores, so that an exchange takes about [\d.]+ ms; ")
+        self.assertRegex(
+            warnings, r"--nodes 300: 150 nodes share \d+ cores, so that an exchange takes about [\d.]+ ms; "
+        )
         self.assertRegex(lines["messages"], "^121000 requests and as many replies per simulated second and machine, ")
         lines, warnings = self.check(EMERGENCY, "--nodes", 1)
         self.assertEqual("", warnings)
@@ -382,14 +459,20 @@ class TrainSimTest(unittest.TestCase):
 
     def test_check_warns_of_what_does_not_fit(self):
         def limited(kind, limit, *arguments):
-            done = subprocess.run([TRAIN_SIM, "check", EMERGENCY, *arguments], stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE, text=True,
-                                  preexec_fn=lambda: resource.setrlimit(kind, (limit, limit)))
+            done = subprocess.run(
+                [TRAIN_SIM, "check", EMERGENCY, *arguments],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                preexec_fn=lambda: resource.setrlimit(kind, (limit, limit)),
+            )
             self.assertEqual(0, done.returncode, done.stderr)
             return done.stderr
 
-        self.assertIn("the master needs 740 open files, more than `ulimit -Hn`; raise that or take fewer nodes",
-                      limited(resource.RLIMIT_NOFILE, 700, "--nodes", "242"))
+        self.assertIn(
+            "the master needs 740 open files, more than `ulimit -Hn`; raise that or take fewer nodes",
+            limited(resource.RLIMIT_NOFILE, 700, "--nodes", "242"),
+        )
         self.assertNotIn("open files", limited(resource.RLIMIT_NOFILE, 740, "--nodes", "242"))
 
     @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
@@ -399,14 +482,23 @@ class TrainSimTest(unittest.TestCase):
             self.skipTest("this machine does not allow mounts")
         try:
             _, warnings = self.check(EMERGENCY, "--out", self.out / "below" / "run")
-            self.assertRegex(warnings, r"--out .*: the bag needs 108 MB, \d+ MB are free; take a longer record_interval_s")
+            self.assertRegex(
+                warnings, r"--out .*: the bag needs 108 MB, \d+ MB are free; take a longer record_interval_s"
+            )
             self.assertEqual("", self.check(EMERGENCY, "--out", self.out, "--set", "duration_s=10")[1])
         finally:
             subprocess.run(["umount", str(self.out)], check=True)
 
     def test_bad_arguments(self):
-        for arguments in ([], ["run"], ["fly", EMERGENCY], ["run", EMERGENCY, "--model", "3d"],
-                          ["run", EMERGENCY, "--threads", "0"], ["run", EMERGENCY, "--csv"], ["run", EMERGENCY, "--tread"]):
+        for arguments in (
+            [],
+            ["run"],
+            ["fly", EMERGENCY],
+            ["run", EMERGENCY, "--model", "3d"],
+            ["run", EMERGENCY, "--threads", "0"],
+            ["run", EMERGENCY, "--csv"],
+            ["run", EMERGENCY, "--tread"],
+        ):
             done = train_sim(*arguments)
             self.assertEqual(2, done.returncode, arguments)
             self.assertNotEqual("", done.stderr, arguments)
@@ -434,7 +526,10 @@ class TrainSimTest(unittest.TestCase):
     def test_a_second_run_replaces_the_first(self):
         self.run_ok(EMERGENCY, "--out", self.out, "--csv", "--set", "duration_s=0.02")
         self.run_ok(DIP, "--out", self.out, *SHORT)
-        self.assertEqual({"checkpoint", "config.yaml", "couplers.csv", "summary.json", "track_wear.csv", "train.bag"}, {p.name for p in self.out.iterdir()})
+        self.assertEqual(
+            {"checkpoint", "config.yaml", "couplers.csv", "summary.json", "track_wear.csv", "train.bag"},
+            {p.name for p in self.out.iterdir()},
+        )
 
     def test_files_of_the_user_are_left_alone(self):
         self.out.mkdir()
@@ -453,8 +548,15 @@ class TrainSimTest(unittest.TestCase):
         """Of every command that prints a result; what a run has written is kept."""
         wagon = str(CONFIG / "vehicles" / "ore_wagon.yaml")
         self.run_ok(DIP, "--out", str(self.out) + "2", *SHORT)
-        for arguments in (["run", DIP, "--out", str(self.out), *SHORT], ["check", DIP, *SHORT], ["verify", str(self.out) + "2"],
-                          ["modes", wagon], ["adhesion", wagon], ["--help"], ["--version"]):
+        for arguments in (
+            ["run", DIP, "--out", str(self.out), *SHORT],
+            ["check", DIP, *SHORT],
+            ["verify", str(self.out) + "2"],
+            ["modes", wagon],
+            ["adhesion", wagon],
+            ["--help"],
+            ["--version"],
+        ):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([TRAIN_SIM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(1, done.returncode, (arguments, done.stderr))
@@ -465,8 +567,9 @@ class TrainSimTest(unittest.TestCase):
         """The standard error full, closed, a pipe without a reader; all three streams closed."""
         digest = self.run_ok(DIP, *SHORT)["state_digest"]
         tables = None
-        for i, (redirection, code) in enumerate((("2>/dev/full", 0), ("2>&-", 0), ("2> >(true)", 0), ("<&- >&- 2>&-", 0),
-                                                 ("2>&1 | head -n 1", 1))):  # there the summary is lost, too
+        for i, (redirection, code) in enumerate(
+            (("2>/dev/full", 0), ("2>&-", 0), ("2> >(true)", 0), ("<&- >&- 2>&-", 0), ("2>&1 | head -n 1", 1))
+        ):  # there the summary is lost, too
             out = pathlib.Path(f"{self.out}{i}")
             command = [TRAIN_SIM, "run", DIP, *SHORT, "--csv", "--out", str(out)]
             script = '"$@" ' + redirection + '; exit "${PIPESTATUS[0]}"'
@@ -491,8 +594,13 @@ class TrainSimTest(unittest.TestCase):
     def test_a_terminal_that_goes_away(self):
         """Without SIGHUP, as behind setsid or after the death of a terminal's multiplexer: the run goes on."""
         terminal, of_run = os.openpty()
-        process = subprocess.Popen([TRAIN_SIM, "run", EMERGENCY, "--model", "ltd", "--out", str(self.out), "--set", "duration_s=60"],
-                                   stdin=of_run, stdout=subprocess.DEVNULL, stderr=of_run, start_new_session=True)
+        process = subprocess.Popen(
+            [TRAIN_SIM, "run", EMERGENCY, "--model", "ltd", "--out", str(self.out), "--set", "duration_s=60"],
+            stdin=of_run,
+            stdout=subprocess.DEVNULL,
+            stderr=of_run,
+            start_new_session=True,
+        )
         os.close(of_run)
         os.read(terminal, 10)  # its progress
         os.close(terminal)
@@ -501,9 +609,28 @@ class TrainSimTest(unittest.TestCase):
 
     def test_a_limit_of_file_sizes(self):
         """`ulimit -f`: the run ends and says so; what fits is kept."""
-        done = subprocess.run(["bash", "-c", 'ulimit -f 2000; "$@"', "bash", TRAIN_SIM, "run", EMERGENCY, "--model", "ltd", "--out",
-                               str(self.out), "--set", "duration_s=20", "--checkpoint-interval", "1"], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            [
+                "bash",
+                "-c",
+                'ulimit -f 2000; "$@"',
+                "bash",
+                TRAIN_SIM,
+                "run",
+                EMERGENCY,
+                "--model",
+                "ltd",
+                "--out",
+                str(self.out),
+                "--set",
+                "duration_s=20",
+                "--checkpoint-interval",
+                "1",
+            ],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.assertEqual(1, done.returncode, done.stderr)
         self.assertIn("train.bag (ulimit -f limits the size of files): File too large", done.stderr)
         summary = json.loads(done.stdout)
@@ -543,10 +670,17 @@ class TrainSimTest(unittest.TestCase):
 
     def test_a_full_disk_for_tables_ends_the_run(self):
         """Only the tables fail here: files of 40 kB are enough for the configuration, not for pressures.csv."""
+
         def small_files():
             resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000))
-        done = subprocess.run([TRAIN_SIM, "run", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=small_files)
+
+        done = subprocess.run(
+            [TRAIN_SIM, "run", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=small_files,
+        )
         self.assertEqual(1, done.returncode, done.stderr)
         self.assertRegex(done.stderr, r"could not write all of .*/wagon_001.csv: File too large \(ulimit -f")
         self.assertFalse(json.loads(done.stdout)["complete"])
@@ -559,7 +693,10 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(0.0, states[-1].shoe_force_n[0])
 
     def test_stop_is_that_of_the_train_not_of_its_rocking(self):
-        stops = [self.run_ok(str(CONFIG / "scenarios" / "single_wagon_stop.yaml"), "--model", model) for model in ("2d", "ltd")]
+        stops = [
+            self.run_ok(str(CONFIG / "scenarios" / "single_wagon_stop.yaml"), "--model", model)
+            for model in ("2d", "ltd")
+        ]
         self.assertAlmostEqual(stops[0]["stop_time_s"], stops[1]["stop_time_s"], delta=0.1)
         self.assertAlmostEqual(stops[0]["stop_distance_m"], stops[1]["stop_distance_m"], delta=0.1)
 
@@ -570,8 +707,13 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("file", done.stderr)
 
     def start_endless(self, **options):
-        process = subprocess.Popen([TRAIN_SIM, "run", EMERGENCY, "--out", str(self.out), "--set", "duration_s=1000"],
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+        process = subprocess.Popen(
+            [TRAIN_SIM, "run", EMERGENCY, "--out", str(self.out), "--set", "duration_s=1000"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            **options,
+        )
         deadline = time.monotonic() + 60
         while not (self.out / "train.bag.active").exists() and time.monotonic() < deadline:
             pass  # no later than that
@@ -617,8 +759,18 @@ class TrainSimTest(unittest.TestCase):
 
     def test_a_broken_simulation_names_the_culprit(self):
         """A dip 1 m deep and 2 m long, at 400 km/h, throws the wheelsets out of every law's domain."""
-        done = train_sim("run", DIP, "--out", self.out, "--set", "initial_speed_kmh=400",
-                         "--set", "track.dips[0].depth_m=1", "--set", "track.dips[0].length_m=2")
+        done = train_sim(
+            "run",
+            DIP,
+            "--out",
+            self.out,
+            "--set",
+            "initial_speed_kmh=400",
+            "--set",
+            "track.dips[0].depth_m=1",
+            "--set",
+            "track.dips[0].length_m=2",
+        )
         self.assertEqual(3, done.returncode, done.stderr)
         self.assertRegex(done.stderr, r"vehicle 1: (front|rear|wheelset|carbody).* is .* at t = \d+\.\d+ s")
         summary = json.loads((self.out / "summary.json").read_text())
@@ -703,9 +855,13 @@ class TrainSimTest(unittest.TestCase):
         false["state_digest"] = "fedcba9876543210"
         file.write_text(json.dumps(false, separators=(",", ":")))
         self.assertIn("summary.json has the digest fedcba9876543210", self.verify(self.out, code=5))
-        for text, complaint in (("[]", "must hold a JSON object"), ("{}", "must say complete"),
-                                ('{"complete": true, "state_digest": 7}', "must have a state_digest"),
-                                ('{"complete": tr', "is not JSON"), ("[" * 100000, "is not JSON")):
+        for text, complaint in (
+            ("[]", "must hold a JSON object"),
+            ("{}", "must say complete"),
+            ('{"complete": true, "state_digest": 7}', "must have a state_digest"),
+            ('{"complete": tr', "is not JSON"),
+            ("[" * 100000, "is not JSON"),
+        ):
             with self.subTest(text[:30]):
                 file.write_text(text)
                 self.assertIn(complaint, self.verify(self.out, code=6))
@@ -719,8 +875,18 @@ class TrainSimTest(unittest.TestCase):
             self.assertIn("same: 51 of 51 records", self.verify(recording, code=0))
 
     def test_check_tells_of_a_breakdown(self):
-        done = train_sim("check", DIP, "--set", "initial_speed_kmh=400", "--set", "track.dips[0].depth_m=1",
-                         "--set", "track.dips[0].length_m=2", "--set", "track.dips[0].from_m=6")
+        done = train_sim(
+            "check",
+            DIP,
+            "--set",
+            "initial_speed_kmh=400",
+            "--set",
+            "track.dips[0].depth_m=1",
+            "--set",
+            "track.dips[0].length_m=2",
+            "--set",
+            "track.dips[0].from_m=6",
+        )
         self.assertEqual(3, done.returncode, done.stdout + done.stderr)
         self.assertIn("broke down in the trial: vehicle 1", done.stderr)
 
@@ -742,15 +908,17 @@ class TrainSimTest(unittest.TestCase):
                     array[index] = value
                     setattr(message, field, array)
                 return topic, message
+
             return self.rewrite(bag, change)
 
         for at, field, index, where in (
-                ("/train/wagon_100/state", "body_z_mps", 1, "vehicle 100, front bolster: body_z_mps"),
-                ("/train/wagon_242/state", "creep_force_n", 3, "vehicle 242, wheelset 4: creep_force_n"),
-                ("/train/wagon_242/state", "wedge_force_n", 2, "vehicle 242, rear bogie, front half: wedge_force_n"),
-                ("/train/state", "position_m", 7, "vehicle 8: position_m"),
-                ("/train/in_train_forces", "coupler_force_n", 99, "connection 100: coupler_force_n"),
-                ("/train/brake_pressures", "cylinder_pressure_pa", 0, "vehicle 1: cylinder_pressure_pa")):
+            ("/train/wagon_100/state", "body_z_mps", 1, "vehicle 100, front bolster: body_z_mps"),
+            ("/train/wagon_242/state", "creep_force_n", 3, "vehicle 242, wheelset 4: creep_force_n"),
+            ("/train/wagon_242/state", "wedge_force_n", 2, "vehicle 242, rear bogie, front half: wedge_force_n"),
+            ("/train/state", "position_m", 7, "vehicle 8: position_m"),
+            ("/train/in_train_forces", "coupler_force_n", 99, "connection 100: coupler_force_n"),
+            ("/train/brake_pressures", "cylinder_pressure_pa", 0, "vehicle 1: cylinder_pressure_pa"),
+        ):
             verdict = self.verify(spoilt(at, field, index, 12345.5), code=5)
             self.assertIn(f"{where} is 12345.5 in the bag, ", verdict)
             self.assertIn("0.3 s (exchange 300)", verdict)
@@ -765,26 +933,47 @@ class TrainSimTest(unittest.TestCase):
             return self.write("other.yaml", text.replace(before, after))
 
         for before, after, complaint in (
-                ("initial_speed_kmh: 80", "initial_speed_kmh: 80.0000001", "vehicle 1, carbody: body_x_mps is"),
-                ("record_interval_s: 0.01", "record_interval_s: 0.02", "message of exchange 10, of which there is none now"),
-                ("duration_s: 0.5", "duration_s: 0.4", "different: the bag goes on after the end at 0.4 s"),
-                ("    count: 1\n", "    count: 2\n", "position_m is of size 242 in the bag, 244 now")):
+            ("initial_speed_kmh: 80", "initial_speed_kmh: 80.0000001", "vehicle 1, carbody: body_x_mps is"),
+            (
+                "record_interval_s: 0.01",
+                "record_interval_s: 0.02",
+                "message of exchange 10, of which there is none now",
+            ),
+            ("duration_s: 0.5", "duration_s: 0.4", "different: the bag goes on after the end at 0.4 s"),
+            ("    count: 1\n", "    count: 2\n", "position_m is of size 242 in the bag, 244 now"),
+        ):
             verdict = self.verify(bag, "--config", change_setting(before, after), code=5)
             self.assertIn(complaint, verdict)
         self.verify(bag, "--config", change_setting("detail_vehicles: [1, 100,", "detail_vehicles: ["), code=0)
 
     def test_verify_an_incomplete_run(self):
         self.run_ok(EMERGENCY, "--out", self.out, *SHORT)
-        cut = self.rewrite(self.out / "train.bag", lambda topic, message: (
-            (topic, message) if getattr(message, "exchange", 0) <= 200 else None))
-        self.assertIn("incomplete: the bag ends at 0.2 s of 0.5 s; the same so far, 21 records", self.verify(cut, code=7))
+        cut = self.rewrite(
+            self.out / "train.bag",
+            lambda topic, message: ((topic, message) if getattr(message, "exchange", 0) <= 200 else None),
+        )
+        self.assertIn(
+            "incomplete: the bag ends at 0.2 s of 0.5 s; the same so far, 21 records", self.verify(cut, code=7)
+        )
         bag = self.out / "train.bag"  # of a recorder that was killed: no index, the last message cut
-        bag.write_bytes(bag.read_bytes()[:bag.stat().st_size // 2])
+        bag.write_bytes(bag.read_bytes()[: bag.stat().st_size // 2])
         bag.rename(self.out / "train.bag.active")
-        self.assertRegex(self.verify(self.out, code=7), r"incomplete: the bag ends at 0\.2\d? s of 0\.5 s; the same so far, 2\d")
+        self.assertRegex(
+            self.verify(self.out, code=7), r"incomplete: the bag ends at 0\.2\d? s of 0\.5 s; the same so far, 2\d"
+        )
         broken = pathlib.Path(self.folder.name) / "broken"
-        train_sim("run", DIP, "--out", broken, "--set", "initial_speed_kmh=400", "--set", "track.dips[0].depth_m=1",
-                  "--set", "track.dips[0].length_m=2")
+        train_sim(
+            "run",
+            DIP,
+            "--out",
+            broken,
+            "--set",
+            "initial_speed_kmh=400",
+            "--set",
+            "track.dips[0].depth_m=1",
+            "--set",
+            "track.dips[0].length_m=2",
+        )
         self.assertIn("the same so far", self.verify(broken, code=7))
 
     def test_verify_what_cannot_be_read(self):
@@ -803,7 +992,9 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("`rosbag decompress`", self.verify(self.out, code=6))
         bag.write_bytes(whole)
         (self.out / "config.yaml").write_text("dt_s: fast\n")
-        self.assertIn("config.yaml is not the scenario that the bag holds, which is repeated", self.verify(self.out, code=0))
+        self.assertIn(
+            "config.yaml is not the scenario that the bag holds, which is repeated", self.verify(self.out, code=0)
+        )
         self.rewrite(bag, lambda topic, message: None if topic == "/train/scenario" else (topic, message)).replace(bag)
         self.assertIn("config.yaml:1: dt_s must be a number", self.verify(self.out, code=6))
 
@@ -836,11 +1027,11 @@ class TrainSimTest(unittest.TestCase):
                 if damage == 0:
                     bag[at] = chance.randrange(256)
                 elif damage == 1:
-                    bag[at:at + 4] = chance.choice([0, 1000, 2**31 - 1, 2**32 - 1]).to_bytes(4, "little")
+                    bag[at : at + 4] = chance.choice([0, 1000, 2**31 - 1, 2**32 - 1]).to_bytes(4, "little")
                 elif damage == 2:
-                    del bag[at:at + chance.randrange(100)]
+                    del bag[at : at + chance.randrange(100)]
                 else:
-                    del bag[max(at, 1):]
+                    del bag[max(at, 1) :]
             (self.out / "train.bag").write_bytes(bag)
             done = train_sim("verify", self.out)
             self.assertIn(done.returncode, (0, 5, 6, 7), f"seed {seed}: {done.stdout + done.stderr}")

@@ -54,7 +54,9 @@ class Target(NamedTuple):
     tolerance: float
 
 
-def _checked(item: Any, where: str, keys: Dict[str, type], optional: Sequence[str], errors: List[str]) -> Optional[dict]:
+def _checked(
+    item: Any, where: str, keys: Dict[str, type], optional: Sequence[str], errors: List[str]
+) -> Optional[dict]:
     if not isinstance(item, dict):
         errors.append(f"{where} must have the keys {', '.join(keys)}")
         return None
@@ -62,16 +64,23 @@ def _checked(item: Any, where: str, keys: Dict[str, type], optional: Sequence[st
     for key in item:
         if key not in keys:
             close = difflib.get_close_matches(str(key), keys, 1)
-            errors.append(f"{where}.{key} is not a known key" + (f"; did you mean {close[0]}?" if close else f"; the keys are {', '.join(keys)}"))
+            errors.append(
+                f"{where}.{key} is not a known key"
+                + (f"; did you mean {close[0]}?" if close else f"; the keys are {', '.join(keys)}")
+            )
     for key, kind in keys.items():
         if key not in item:
             if key not in optional:
                 errors.append(f"{where}.{key} is missing")
-        elif kind is float and (isinstance(item[key], bool) or not isinstance(item[key], (int, float)) or not math.isfinite(item[key])):
+        elif kind is float and (
+            isinstance(item[key], bool) or not isinstance(item[key], (int, float)) or not math.isfinite(item[key])
+        ):
             errors.append(f"{where}.{key} must be a number, got {item[key]!r}")
         elif kind is str and not isinstance(item[key], str):
             errors.append(f"{where}.{key} must be a text, got {item[key]!r}")
-        elif kind is list and not (isinstance(item[key], list) and all(isinstance(text, str) and "=" in text for text in item[key])):
+        elif kind is list and not (
+            isinstance(item[key], list) and all(isinstance(text, str) and "=" in text for text in item[key])
+        ):
             errors.append(f"{where}.{key} must be a list of path=value, got {item[key]!r}")
     numbers = {key: item[key] for key in ("tolerance",) if isinstance(item.get(key), (int, float))}
     errors += [f"{where}.{key} must be > 0, got {value}" for key, value in numbers.items() if value <= 0]
@@ -79,7 +88,10 @@ def _checked(item: Any, where: str, keys: Dict[str, type], optional: Sequence[st
 
 
 def _scenario(name: str, beside: pathlib.Path) -> Optional[pathlib.Path]:
-    for folder in (beside, *(pathlib.Path(entry) for entry in os.environ.get("TRAIN_BRAKE_CONFIG", "").split(":") if entry)):
+    for folder in (
+        beside,
+        *(pathlib.Path(entry) for entry in os.environ.get("TRAIN_BRAKE_CONFIG", "").split(":") if entry),
+    ):
         for file in (folder / name, folder / "scenarios" / f"{name}.yaml"):
             if file.is_file():
                 return file
@@ -103,7 +115,9 @@ def read(file: pathlib.Path) -> Tuple[List[Parameter], List[Target], List[str]]:
             errors.append(f"{key} must be a list of one or more")
             given[key] = []
     for i, item in enumerate(given["parameters"]):
-        found = _checked(item, f"parameters[{i}]", {"path": str, "start": float, "lowest": float, "highest": float}, (), errors)
+        found = _checked(
+            item, f"parameters[{i}]", {"path": str, "start": float, "lowest": float, "highest": float}, (), errors
+        )
         if found:
             parameters.append(Parameter(**found))
             if not found["lowest"] < found["highest"] or not found["lowest"] <= found["start"] <= found["highest"]:
@@ -114,15 +128,22 @@ def read(file: pathlib.Path) -> Tuple[List[Parameter], List[Target], List[str]]:
         if found:
             scenario = _scenario(found["scenario"], file.parent)
             if scenario is None:
-                errors.append(f"targets[{i}].scenario: there is no {found['scenario']} beside {file} nor in TRAIN_BRAKE_CONFIG")
-            targets.append(Target(scenario, tuple(found.get("set", ())), found["result"], found["value"], found["tolerance"]))
+                errors.append(
+                    f"targets[{i}].scenario: there is no {found['scenario']} beside {file} nor in TRAIN_BRAKE_CONFIG"
+                )
+            targets.append(
+                Target(scenario, tuple(found.get("set", ())), found["result"], found["value"], found["tolerance"])
+            )
     fixed = given.get("fixed", [])
     if not isinstance(fixed, list) or not all(isinstance(text, str) and "=" in text for text in fixed):
         errors.append(f"fixed must be a list of path=value, got {fixed!r}")
     if errors:
         raise StudyError("\n".join(f"{file}: {error}" for error in errors))
     if len(targets) < len(parameters):
-        print(f"calibrate: warning: {len(parameters)} parameters for {len(targets)} target(s): many values fit", file=sys.stderr)
+        print(
+            f"calibrate: warning: {len(parameters)} parameters for {len(targets)} target(s): many values fit",
+            file=sys.stderr,
+        )
     return parameters, targets, fixed
 
 
@@ -139,33 +160,49 @@ class Runs:
         self.done = 0
 
     def changes(self, values: Sequence[float]) -> List[Change]:
-        return [Change(path.strip(), number(value)) for parameter, value in zip(self.parameters, values)
-                for path in parameter.path.split("+")]
+        return [
+            Change(path.strip(), number(value))
+            for parameter, value in zip(self.parameters, values)
+            for path in parameter.path.split("+")
+        ]
 
     def _run(self, scenario: pathlib.Path, changes: Sequence[str], values: Sequence[float]) -> Dict[str, Any]:
         words = [word for text in [*self.fixed, *changes, *map(str, self.changes(values))] for word in ("--set", text)]
-        done = subprocess.run([*self.train_sim, "run", str(scenario), "--threads", "1", *words], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run(
+            [*self.train_sim, "run", str(scenario), "--threads", "1", *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
         self.done += 1
         if done.returncode == 2:
             raise StudyError(done.stderr.strip())
         if done.returncode:
-            raise RunFailed(f"{scenario} with {' '.join(map(str, self.changes(values)))} ended with exit code {done.returncode}:\n"
-                            + done.stderr.strip()[-500:])
+            raise RunFailed(
+                f"{scenario} with {' '.join(map(str, self.changes(values)))} ended with exit code {done.returncode}:\n"
+                + done.stderr.strip()[-500:]
+            )
         return flat(json.loads(done.stdout))
 
     def results(self, points: Sequence[Sequence[float]]) -> numpy.ndarray:
         """[point, target]"""
         kinds = list(dict.fromkeys((target.scenario, target.changes) for target in self.targets))
-        futures = {(i, kind): self.pool.submit(self._run, *kind, point) for i, point in enumerate(points) for kind in kinds}
+        futures = {
+            (i, kind): self.pool.submit(self._run, *kind, point) for i, point in enumerate(points) for kind in kinds
+        }
         found = numpy.empty((len(points), len(self.targets)))
         for i in range(len(points)):
             for k, target in enumerate(self.targets):
                 summary = futures[i, (target.scenario, target.changes)].result()
                 value = summary.get(target.result)
                 if isinstance(value, bool) or not isinstance(value, (int, float)):
-                    numbers = [name for name, x in summary.items() if isinstance(x, (int, float)) and not isinstance(x, bool)]
-                    raise StudyError(f"targets[{k}].result: the run has no number {target.result}; it has {', '.join(numbers)}")
+                    numbers = [
+                        name for name, x in summary.items() if isinstance(x, (int, float)) and not isinstance(x, bool)
+                    ]
+                    raise StudyError(
+                        f"targets[{k}].result: the run has no number {target.result}; it has {', '.join(numbers)}"
+                    )
                 found[i, k] = value
         return found
 
@@ -203,15 +240,22 @@ def fit(runs: Runs, report=lambda values, results: None) -> Tuple[numpy.ndarray,
     best = least_squares(residuals, start, jacobian, bounds=(0.0, 1.0), xtol=1e-9, ftol=1e-10, gtol=1e-10, max_nfev=50)
     for target, row in zip(runs.targets, best.jac):
         if not row.any():
-            print(f"calibrate: {target.scenario.stem}: {target.result} does not depend on the parameters here; start elsewhere", file=sys.stderr)
+            print(
+                f"calibrate: {target.scenario.stem}: {target.result} does not depend on the parameters here; start elsewhere",
+                file=sys.stderr,
+            )
     return low + span * best.x, results([best.x])[0]
 
 
 def _arguments(argv: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser("calibrate", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        "calibrate", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("file", metavar="FILE.yaml", type=pathlib.Path, help="parameters and targets")
     parser.add_argument("--out", type=pathlib.Path, metavar="FILE.json", help="write the result there, too")
-    parser.add_argument("--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="runs at a time (default: cores)")
+    parser.add_argument(
+        "--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="runs at a time (default: cores)"
+    )
     return parser.parse_args(argv)
 
 
@@ -221,7 +265,10 @@ def _calibrate(options: argparse.Namespace, train_sim) -> int:
 
     def report(values, results):
         off = max(abs((r - t.value) / t.tolerance) for r, t in zip(results, targets))
-        print(f"calibrate: {runs.done} runs, {', '.join(f'{v:.6g}' for v in values)}: largest difference {off:.3g} tolerances", file=sys.stderr)
+        print(
+            f"calibrate: {runs.done} runs, {', '.join(f'{v:.6g}' for v in values)}: largest difference {off:.3g} tolerances",
+            file=sys.stderr,
+        )
 
     values, results = fit(runs, report)
     print("--set " + " --set ".join(map(str, runs.changes(values))))
@@ -229,8 +276,10 @@ def _calibrate(options: argparse.Namespace, train_sim) -> int:
     for target, result in zip(targets, results):
         within = abs(result - target.value) <= target.tolerance
         met = met and within
-        print(f"{target.scenario.stem} {' '.join(target.changes)} {target.result}: {result:.7g}, target {target.value:g} +- {target.tolerance:g}"
-              + ("" if within else "  MISSED"))
+        print(
+            f"{target.scenario.stem} {' '.join(target.changes)} {target.result}: {result:.7g}, target {target.value:g} +- {target.tolerance:g}"
+            + ("" if within else "  MISSED")
+        )
     for parameter, value in zip(parameters, values):
         span = parameter.highest - parameter.lowest
         for bound, name in ((parameter.lowest, "lowest"), (parameter.highest, "highest")):
@@ -239,8 +288,18 @@ def _calibrate(options: argparse.Namespace, train_sim) -> int:
     if options.out:
         found = {
             "parameters": [{"path": p.path, "value": float(v)} for p, v in zip(parameters, values)],
-            "targets": [{"scenario": str(t.scenario), "set": list(t.changes), "result": t.result, "target": t.value,
-                         "tolerance": t.tolerance, "obtained": float(r), "difference": float(r - t.value)} for t, r in zip(targets, results)],
+            "targets": [
+                {
+                    "scenario": str(t.scenario),
+                    "set": list(t.changes),
+                    "result": t.result,
+                    "target": t.value,
+                    "tolerance": t.tolerance,
+                    "obtained": float(r),
+                    "difference": float(r - t.value),
+                }
+                for t, r in zip(targets, results)
+            ],
             "runs": runs.done,
         }
         options.out.write_text(json.dumps(found, indent=2) + "\n")

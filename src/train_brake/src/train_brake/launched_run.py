@@ -84,7 +84,9 @@ def launch(arguments, watched):
     for name in arguments:  # roslaunch itself takes no notice of what it does not know
         if name not in known:
             close = difflib.get_close_matches(name, known, 1)
-            raise roslaunch.RLException(f"train.launch has no argument '{name}'" + (f"; meant: {close[0]}?" if close else ""))
+            raise roslaunch.RLException(
+                f"train.launch has no argument '{name}'" + (f"; meant: {close[0]}?" if close else "")
+            )
     words = [f"{name}:={value}" for name, value in arguments.items()]
     uuid = roslaunch.rlutil.get_or_generate_uuid(None, False)
     roslaunch.configure_logging(uuid)
@@ -143,10 +145,14 @@ def in_short(summary):
         largest = summary.get(name)
         if not largest:
             return []
-        return [f"{what} {abs(largest['value']) / 1e3:.0f} kN in connection {largest['connection']} at {largest['time_s']:.1f} s"]
+        return [
+            f"{what} {abs(largest['value']) / 1e3:.0f} kN in connection {largest['connection']} at {largest['time_s']:.1f} s"
+        ]
 
     vehicles = summary.get("vehicles")
-    what = f"{summary.get('scenario')}: {vehicles} vehicle{'' if vehicles == 1 else 's'}, {summary.get('model')} model, "
+    what = (
+        f"{summary.get('scenario')}: {vehicles} vehicle{'' if vehicles == 1 else 's'}, {summary.get('model')} model, "
+    )
     if summary.get("stopped"):
         what += f"stands after {summary['stop_time_s']:.1f} s and {summary['stop_distance_m']:.1f} m"
     else:
@@ -214,5 +220,9 @@ def run(words):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # what cannot be read is told by the report
             summary = json.loads(pathlib.Path(out, "summary.json").read_text(encoding="utf-8"))
             page = pathlib.Path(out, "report.html")
-            print(presentable("\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else []))))
+            print(
+                presentable(
+                    "\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else []))
+                )
+            )
     return 1 if code is None else code

@@ -177,7 +177,11 @@ class Run:
             Event(
                 float(command["time_s"]),
                 str(command.get("kind")),
-                ", ".join(f"{key} {value}" for key, value in command.items() if key not in ("time_s", "kind") and value is not None),
+                ", ".join(
+                    f"{key} {value}"
+                    for key, value in command.items()
+                    if key not in ("time_s", "kind") and value is not None
+                ),
             )
             for command in (self.config or {}).get("commands") or []
             if command.get("time_s") is not None

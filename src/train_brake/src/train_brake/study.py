@@ -75,7 +75,9 @@ def draws_of(text: str, count: int, generator: numpy.random.Generator) -> Tuple[
     match = re.fullmatch(r"(\w+)\((.*)\)", law)
     kinds = {"uniform": 2, "normal": 2, "lognormal": 2, "choice": None}
     if not match or match[1] not in kinds:
-        raise StudyError(f"'{text}': must be uniform(LOW,HIGH), normal(MEAN,SD), lognormal(MEDIAN,SD) or choice(V1,V2,...)")
+        raise StudyError(
+            f"'{text}': must be uniform(LOW,HIGH), normal(MEAN,SD), lognormal(MEDIAN,SD) or choice(V1,V2,...)"
+        )
     words = [word.strip() for word in match[2].split(",")]
     if match[1] == "choice":
         return path, [words[i] for i in generator.integers(len(words), size=count)]
@@ -84,7 +86,9 @@ def draws_of(text: str, count: int, generator: numpy.random.Generator) -> Tuple[
     except ValueError:
         raise StudyError(f"'{text}': {match[1]} takes two numbers") from None
     if (b < a) if match[1] == "uniform" else (b < 0.0 or (match[1] == "lognormal" and a <= 0.0)):
-        raise StudyError(f"'{text}': {'HIGH is below LOW' if match[1] == 'uniform' else 'a spread must be >= 0, a median > 0'}")
+        raise StudyError(
+            f"'{text}': {'HIGH is below LOW' if match[1] == 'uniform' else 'a spread must be >= 0, a median > 0'}"
+        )
     if match[1] == "uniform":
         values = generator.uniform(a, b, count)
     elif match[1] == "normal":

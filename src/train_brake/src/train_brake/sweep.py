@@ -62,24 +62,50 @@ def _positive(text: str) -> int:
 
 
 def _arguments(argv: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser("sweep", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenario", nargs="?", metavar="SCENARIO", type=pathlib.Path, help="scenario file; none: the study goes on")
+    parser = argparse.ArgumentParser(
+        "sweep", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "scenario", nargs="?", metavar="SCENARIO", type=pathlib.Path, help="scenario file; none: the study goes on"
+    )
     parser.add_argument("out", metavar="OUT", type=pathlib.Path, help="folder of the study")
-    parser.add_argument("--grid", action="append", default=[], metavar="PATH=VALUES", help="V1,V2,... or FIRST:LAST:COUNT")
+    parser.add_argument(
+        "--grid", action="append", default=[], metavar="PATH=VALUES", help="V1,V2,... or FIRST:LAST:COUNT"
+    )
     parser.add_argument("--list", type=pathlib.Path, metavar="FILE.csv", help="a row per run, paths in the first row")
-    parser.add_argument("--random", action="append", default=[], metavar="PATH=LAW",
-                        help="uniform(LOW,HIGH), normal(MEAN,SD), lognormal(MEDIAN,SD) or choice(V1,V2,...)")
+    parser.add_argument(
+        "--random",
+        action="append",
+        default=[],
+        metavar="PATH=LAW",
+        help="uniform(LOW,HIGH), normal(MEAN,SD), lognormal(MEDIAN,SD) or choice(V1,V2,...)",
+    )
     parser.add_argument("--draws", type=_positive, metavar="N", help="how many of --random")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of the draws (default 1)")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", dest="changes", help="of all runs")
     parser.add_argument("--model", choices=("2d", "ltd", "ltd-no-inertia"), help="of all runs")
-    parser.add_argument("--results", action="append", default=[], metavar="PATH",
-                        help="shown on the page, as named in results.csv (default: stopping distance or end speed, largest forces)")
-    parser.add_argument("--figures", action="store_true", help="write each figure of the page into OUT/figures, too, as SVG and PNG")
-    parser.add_argument("--jobs", type=_positive, metavar="N", default=len(os.sched_getaffinity(0)), help="runs at a time (default: cores)")
+    parser.add_argument(
+        "--results",
+        action="append",
+        default=[],
+        metavar="PATH",
+        help="shown on the page, as named in results.csv (default: stopping distance or end speed, largest forces)",
+    )
+    parser.add_argument(
+        "--figures", action="store_true", help="write each figure of the page into OUT/figures, too, as SVG and PNG"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=_positive,
+        metavar="N",
+        default=len(os.sched_getaffinity(0)),
+        help="runs at a time (default: cores)",
+    )
     parser.add_argument("--keep-records", action="store_true", help="keep each run's train.bag, too")
     parser.add_argument("--plan-only", action="store_true", help="write the plan, run nothing")
-    parser.add_argument("--collect", action="store_true", help="make the table and the page of what is done, run nothing")
+    parser.add_argument(
+        "--collect", action="store_true", help="make the table and the page of what is done, run nothing"
+    )
     options = parser.parse_args(argv)
     planned = options.grid or options.list or options.random
     if options.scenario and not planned:
@@ -97,7 +123,11 @@ def _variants(options: argparse.Namespace) -> List[List[Change]]:
     if options.random:
         generator = numpy.random.Generator(numpy.random.PCG64(options.seed))
         draws = [draws_of(text, options.draws, generator) for text in options.random]
-        points = [[*point, *(Change(path, values[i]) for path, values in draws)] for point in points for i in range(options.draws)]
+        points = [
+            [*point, *(Change(path, values[i]) for path, values in draws)]
+            for point in points
+            for i in range(options.draws)
+        ]
     for point in points[:1]:
         paths = [change.path for change in point]
         twice = sorted({path for path in paths if paths.count(path) > 1})
@@ -206,8 +236,13 @@ class Study:
                     if ends.is_set():
                         return None
                     # In a group of its own: Ctrl-C ends it when this program says so.
-                    process = subprocess.Popen([*train_sim, "run", "config.yaml", "--threads", "1", *keep], cwd=run, stdout=out,
-                                               stderr=log, start_new_session=True)
+                    process = subprocess.Popen(
+                        [*train_sim, "run", "config.yaml", "--threads", "1", *keep],
+                        cwd=run,
+                        stdout=out,
+                        stderr=log,
+                        start_new_session=True,
+                    )
                     running[process.pid] = process
                 code = process.wait()
                 with lock:
@@ -266,16 +301,26 @@ def percentiles(study: Study, rows: List[Dict[str, Any]]) -> List[Dict[str, Any]
     points: Dict[tuple, List[Dict[str, Any]]] = {}
     for row in rows:
         points.setdefault(tuple(row[path] for path in kept), []).append(row)
-    names = [name for name in dict.fromkeys(name for row in rows for name in row)
-             if name not in study.plan[0] and any(is_number(row.get(name)) for row in rows)]
+    names = [
+        name
+        for name in dict.fromkeys(name for row in rows for name in row)
+        if name not in study.plan[0] and any(is_number(row.get(name)) for row in rows)
+    ]
     found = []
     for point, members in points.items():
         for name in names:
             values = numpy.array([row[name] for row in members if is_number(row.get(name))], float)
             if not len(values):
                 continue
-            line = dict(zip(kept, point), result=name, runs=len(members), values=len(values), mean=values.mean(),
-                        standard_deviation=values.std(ddof=1) if len(values) > 1 else float("nan"), min=values.min())
+            line = dict(
+                zip(kept, point),
+                result=name,
+                runs=len(members),
+                values=len(values),
+                mean=values.mean(),
+                standard_deviation=values.std(ddof=1) if len(values) > 1 else float("nan"),
+                min=values.min(),
+            )
             line.update({f"p{p}": numpy.percentile(values, p) for p in PERCENTILES})
             found.append({**line, "max": values.max()})
     return found
@@ -315,7 +360,10 @@ def _run(options: argparse.Namespace, train_sim) -> int:
 
     print(f"sweep: wrote {write_page(study, rows, options.results, options.figures)}")
     if len(rows) < len(study.plan):
-        print(f"sweep: {len(rows)} of {len(study.plan)} runs are done; `rosrun train_brake sweep {study.folder}` goes on", file=sys.stderr)
+        print(
+            f"sweep: {len(rows)} of {len(study.plan)} runs are done; `rosrun train_brake sweep {study.folder}` goes on",
+            file=sys.stderr,
+        )
     broken = [row["run"] for row in rows if row.get("fault")]
     if broken:
         print(f"sweep: broke down: run {', '.join(broken)}", file=sys.stderr)

@@ -266,7 +266,9 @@ def passivity(vehicles, seconds):
             turned_j += abs(done_j)
     energies_j = [vehicles.kinetic_j(mean_speeds(vehicles, second)) for _ in range(5)]
     allowed_j = PASSIVE * (before_j + turned_j) + 1e-6
-    gain_j = max(energies_j[0] - before_j - work_j, *(after - before for before, after in zip(energies_j, energies_j[1:])))
+    gain_j = max(
+        energies_j[0] - before_j - work_j, *(after - before for before, after in zip(energies_j, energies_j[1:]))
+    )
     found = f"gains at most {gain_j:.3g} J over the couplers' work, {allowed_j:.3g} J are allowed"
     if gain_j > allowed_j:
         raise Failure(found)
@@ -348,7 +350,14 @@ def judge(vehicles, seconds):
 def built_in(namespace):
     """A wagon node of this program."""
     process = subprocess.Popen(
-        ["rosrun", "wagon_node", "wagon_node", f"__ns:={namespace}", "__name:=vehicle_test_built_in", "_master_timeout_s:=0"],
+        [
+            "rosrun",
+            "wagon_node",
+            "wagon_node",
+            f"__ns:={namespace}",
+            "__name:=vehicle_test_built_in",
+            "_master_timeout_s:=0",
+        ],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
@@ -428,7 +437,9 @@ def main(words):
         with built_in(options["ns"]) as beside:
             print(
                 "  beside it              "
-                + differences(vehicles, Vehicles(beside, own, group, dt_s, steps, float(options["deadline_s"])), seconds)
+                + differences(
+                    vehicles, Vehicles(beside, own, group, dt_s, steps, float(options["deadline_s"])), seconds
+                )
             )
         return 0
     return 1

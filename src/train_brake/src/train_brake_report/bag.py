@@ -59,7 +59,9 @@ def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
         for message in (TrainState, InTrainForces, BrakePressures, EnergyLedger):
             topics = by_type.get(message._type, [])
             if len(topics) > 1:
-                raise BagError(f"{path}: it holds more than one train: {', '.join(sorted(topics))}. `rosbag filter` parts them")
+                raise BagError(
+                    f"{path}: it holds more than one train: {', '.join(sorted(topics))}. `rosbag filter` parts them"
+                )
             chosen.update((message._type, topic) for topic in topics)
         details = {_vehicle_of(bag, topic): topic for topic in by_type.get(WagonState._type, [])}
         if wagon is None and details:
@@ -67,11 +69,15 @@ def read_bag(path: pathlib.Path, wagon: Optional[int]) -> Recording:
         if wagon in details:
             chosen[WagonState._type] = details[wagon]
         if not set(chosen) - {EnergyLedger._type}:
-            raise BagError(f"{path}: it holds no records of a train; it has "
-                           + (", ".join(sorted(t for topics in by_type.values() for t in topics)) or "no message at all"))
+            raise BagError(
+                f"{path}: it holds no records of a train; it has "
+                + (", ".join(sorted(t for topics in by_type.values() for t in topics)) or "no message at all")
+            )
         ledger = bag.messages(chosen[EnergyLedger._type]) if EnergyLedger._type in chosen else []
         tables = bag.tables([topic for kind, topic in chosen.items() if kind != EnergyLedger._type])
-        found = [tables.get(chosen.get(message._type)) for message in (TrainState, InTrainForces, BrakePressures, WagonState)]
+        found = [
+            tables.get(chosen.get(message._type)) for message in (TrainState, InTrainForces, BrakePressures, WagonState)
+        ]
         return Recording(*found, _scenario(bag), ledger, sorted(details))
 
 

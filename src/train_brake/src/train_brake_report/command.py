@@ -43,17 +43,32 @@ def _html_file(text: str) -> pathlib.Path:
 
 
 def _arguments(argv: List[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser("report", description=DESCRIPTION, epilog=EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        "report", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("runs", nargs="*", metavar="RUN", type=pathlib.Path, help="folder of a run, or a bag")
-    parser.add_argument("--out", type=_html_file, metavar="FILE.html",
-                        help="the page; default: report.html in the run's folder, or here if there are several runs")
-    parser.add_argument("--figures", type=pathlib.Path, metavar="FOLDER", help="write each figure there, too, as SVG and PNG")
-    parser.add_argument("--wagon", type=_natural, metavar="N",
-                        help=f"vehicle whose shoe and wheel are shown (default {paper.WAGON}, or the last of a shorter train)")
-    parser.add_argument("--coupler", type=_natural, metavar="N",
-                        help=f"connection whose force is shown (default {paper.COUPLER} on the paper's train, else the one "
-                             "with the largest force)")
+    parser.add_argument(
+        "--out",
+        type=_html_file,
+        metavar="FILE.html",
+        help="the page; default: report.html in the run's folder, or here if there are several runs",
+    )
+    parser.add_argument(
+        "--figures", type=pathlib.Path, metavar="FOLDER", help="write each figure there, too, as SVG and PNG"
+    )
+    parser.add_argument(
+        "--wagon",
+        type=_natural,
+        metavar="N",
+        help=f"vehicle whose shoe and wheel are shown (default {paper.WAGON}, or the last of a shorter train)",
+    )
+    parser.add_argument(
+        "--coupler",
+        type=_natural,
+        metavar="N",
+        help=f"connection whose force is shown (default {paper.COUPLER} on the paper's train, else the one "
+        "with the largest force)",
+    )
     parser.add_argument("--by-scenario", action="store_true", help="overlay only runs of the same scenario")
     parser.add_argument("--vehicle", metavar="FILE.yaml", help="show adhesion and modes of this vehicle, too")
     options = parser.parse_args(argv)
@@ -117,8 +132,12 @@ class Report:
         self.longest = max(self.longest, *(run.vehicles for run in runs))
         for run in runs:
             paper.judge(run, self.train_sim)
-        group = Group(anchor if self.options.by_scenario else "", runs,
-                      self.options.wagon or min(paper.WAGON, runs[0].vehicles), self.options.coupler)
+        group = Group(
+            anchor if self.options.by_scenario else "",
+            runs,
+            self.options.wagon or min(paper.WAGON, runs[0].vehicles),
+            self.options.coupler,
+        )
         self.sections.append(page.Section(name or "Figures", f"section_{anchor}", contents.of_runs(group)))
         for run in runs:
             card = cards.card_of(run)
@@ -128,24 +147,36 @@ class Report:
 
     def warn_of_numbers(self) -> None:
         """Of the user that no train has: the figure is left out, and its place tells why."""
-        for option, number, last in (("--wagon", self.options.wagon, self.longest),
-                                     ("--coupler", self.options.coupler, self.longest - 1)):
+        for option, number, last in (
+            ("--wagon", self.options.wagon, self.longest),
+            ("--coupler", self.options.coupler, self.longest - 1),
+        ):
             if number is not None and self.longest and number > last:
                 print(f"report: warning: {option} {number} is not shown: the train has {last}", file=sys.stderr)
 
     def add_tables(self) -> None:
         if self.rows:
-            self.sections.append(page.Section("Tables of the paper", "tables", [cards.table_1(self.rows),
-                                                                               cards.table_2(self.rows)]))
+            self.sections.append(
+                page.Section("Tables of the paper", "tables", [cards.table_1(self.rows), cards.table_2(self.rows)])
+            )
 
     def add_vehicle(self) -> None:
-        self.sections.append(page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, self.train_sim)))
+        self.sections.append(
+            page.Section("One vehicle", "vehicle", contents.of_vehicle(self.options.vehicle, self.train_sim))
+        )
 
     def html(self) -> str:
-        title = "Train braking: " + (self.cards[0].name if len(self.cards) == 1 else f"{len(self.cards)} runs" if self.cards
-                                     else pathlib.Path(self.options.vehicle).stem)
-        made = (f"Made on {datetime.datetime.now():%Y-%m-%d %H:%M} by report of train_brake, with Python "
-                f"{platform.python_version()}, NumPy {numpy.__version__}, Matplotlib {matplotlib.__version__}.")
+        title = "Train braking: " + (
+            self.cards[0].name
+            if len(self.cards) == 1
+            else f"{len(self.cards)} runs"
+            if self.cards
+            else pathlib.Path(self.options.vehicle).stem
+        )
+        made = (
+            f"Made on {datetime.datetime.now():%Y-%m-%d %H:%M} by report of train_brake, with Python "
+            f"{platform.python_version()}, NumPy {numpy.__version__}, Matplotlib {matplotlib.__version__}."
+        )
         return page.render(title, self.cards, self.sections, made)
 
 

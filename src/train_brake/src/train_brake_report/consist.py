@@ -10,9 +10,13 @@ def mass_kg(vehicle: dict) -> float:
     load = (vehicle.get("load") or {}).get("mass_kg", 0.0) * vehicle.get("load_fraction", 1.0)
     if vehicle.get("mass_kg"):
         return vehicle["mass_kg"] + load
-    return (vehicle["carbody"]["mass_kg"] + 2 * (vehicle["bolster"]["mass_kg"] + 4 * vehicle["wedge_mass_kg"])
-            + 2 * vehicle["bogie_frame"]["mass_kg"]
-            + 2 * vehicle.get("wheelsets_per_bogie", 2) * vehicle["wheelset"]["mass_kg"] + load)
+    return (
+        vehicle["carbody"]["mass_kg"]
+        + 2 * (vehicle["bolster"]["mass_kg"] + 4 * vehicle["wedge_mass_kg"])
+        + 2 * vehicle["bogie_frame"]["mass_kg"]
+        + 2 * vehicle.get("wheelsets_per_bogie", 2) * vehicle["wheelset"]["mass_kg"]
+        + load
+    )
 
 
 def groups(train: dict) -> Iterator[Tuple[int, int, dict]]:

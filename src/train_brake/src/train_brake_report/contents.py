@@ -4,7 +4,19 @@ from typing import Callable, List, Tuple, Union
 
 from train_brake_report.figure import Figure, LeftOut
 from train_brake_report.figures import (
-    air_brake, brake_table, changes, couplers, dip, energy, pressures, route, space_time, speeds, vehicle, wheel_forces, wheel_slides,
+    air_brake,
+    brake_table,
+    changes,
+    couplers,
+    dip,
+    energy,
+    pressures,
+    route,
+    space_time,
+    speeds,
+    vehicle,
+    wheel_forces,
+    wheel_slides,
 )
 from train_brake_report.group import Group
 
@@ -44,7 +56,9 @@ def _draw(title: str, draw: Callable, *arguments) -> Item:
 
 def of_runs(group: Group) -> List[Item]:
     items = [_draw(title, draw, group) for title, draw in OF_RUNS]
-    items = [item for item in items if isinstance(item, Figure) or item[1]]  # without a reason: there is nothing to miss
+    items = [
+        item for item in items if isinstance(item, Figure) or item[1]
+    ]  # without a reason: there is nothing to miss
     if group.name:
         for item in items:
             if isinstance(item, Figure):
@@ -53,5 +67,7 @@ def of_runs(group: Group) -> List[Item]:
 
 
 def of_vehicle(vehicle_file: str, train_sim: List[str]) -> List[Item]:
-    return [_draw("Adhesion characteristics", vehicle.draw_adhesion, vehicle_file, train_sim),
-            _draw("Modes of vibration", vehicle.mode_table, vehicle_file, train_sim)]
+    return [
+        _draw("Adhesion characteristics", vehicle.draw_adhesion, vehicle_file, train_sim),
+        _draw("Modes of vibration", vehicle.mode_table, vehicle_file, train_sim),
+    ]

@@ -45,7 +45,7 @@ class Figure:
     def svg(self) -> str:
         """To stand in a page: no prologue, colours as CSS variables that fall back to themselves."""
         text = self._file("svg").decode()
-        text = presentable(text[text.index("<svg"):])
+        text = presentable(text[text.index("<svg") :])
         text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
         for colour, name in style.CSS_NAMES.items():
             text = re.sub(rf"(?<=: ){colour}\b", f"var(--{name}, {colour})", text)
@@ -76,8 +76,9 @@ def panels_with_differences(height_in: float, differences: List[str]) -> tuple:
     """(canvas, the panel of the quantity itself, a lower panel for each difference), one above the other."""
     below_in = 1.7
     canvas = new_canvas(height_in + below_in * len(differences))
-    axes, *below = canvas.subplots(1 + len(differences), 1, sharex=True, squeeze=False,
-                                   height_ratios=[height_in] + [below_in] * len(differences))[:, 0]
+    axes, *below = canvas.subplots(
+        1 + len(differences), 1, sharex=True, squeeze=False, height_ratios=[height_in] + [below_in] * len(differences)
+    )[:, 0]
     for panel, title in zip(below, differences):
         panel.set_title(title, loc="left", fontsize=matplotlib.rcParams["legend.fontsize"])
         panel.axhline(0.0, color=style.MUTED, linewidth=1.0)

@@ -14,8 +14,11 @@ TABLES = {"state": "TrainState", "forces": "InTrainForces", "pressures": "BrakeP
 
 def lacks(run: Run, table: str) -> str:
     """Why the run cannot be drawn from this table; empty if it can."""
-    return "" if getattr(run.recording, table) is not None else (
-        f"the recording has no topic of the type train_brake_msgs/{TABLES[table]}")
+    return (
+        ""
+        if getattr(run.recording, table) is not None
+        else (f"the recording has no topic of the type train_brake_msgs/{TABLES[table]}")
+    )
 
 
 @dataclasses.dataclass
@@ -48,14 +51,17 @@ class Group:
         return self.line(run)["color"]
 
     @staticmethod
-    def comparable(runs: List[Run], table: str, same_instants: bool = True, same_train: bool = True) -> Tuple[List[Run], str]:
+    def comparable(
+        runs: List[Run], table: str, same_instants: bool = True, same_train: bool = True
+    ) -> Tuple[List[Run], str]:
         """(those of runs[1:] of which differences to the first can be taken, a sentence on the others)"""
         first, found, others = runs[0], [], []
         for run in runs[1:]:
             if same_train and run.vehicles != first.vehicles:
                 others.append(f"{run.label} has {run.vehicles} vehicle(s), {first.label} {first.vehicles}")
-            elif same_instants and not len(common_rows(getattr(first.recording, table).time_s,
-                                                       getattr(run.recording, table).time_s)[0]):
+            elif same_instants and not len(
+                common_rows(getattr(first.recording, table).time_s, getattr(run.recording, table).time_s)[0]
+            ):
                 others.append(f"{run.label} and {first.label} have no instant in common")
             else:
                 found.append(run)

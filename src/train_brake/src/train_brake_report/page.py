@@ -42,7 +42,13 @@ def _is_number(text: str) -> bool:
 
 
 def render(title: str, cards: List[Card], sections: List[Section], made: str) -> str:
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(str(HERE)), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined, finalize=_shown)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(str(HERE)),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=_shown,
+    )
     environment.filters["is_number"] = _is_number
     return environment.get_template("page.html").render(title=title, cards=cards, sections=sections, made=made)

@@ -15,9 +15,15 @@ DURATION_S = {"emergency": 70.0, "full_service": 90.0, "minimum": 150.0}
 
 # Table 1: speed at the last step [km/h].
 SPEED_KMH = {
-    ("ltd-no-inertia", "emergency"): 3.97, ("ltd-no-inertia", "full_service"): 1.05, ("ltd-no-inertia", "minimum"): 77.29,
-    ("ltd", "emergency"): 9.86, ("ltd", "full_service"): 7.20, ("ltd", "minimum"): 77.45,
-    ("2d", "emergency"): 9.94, ("2d", "full_service"): 7.18, ("2d", "minimum"): 77.42,
+    ("ltd-no-inertia", "emergency"): 3.97,
+    ("ltd-no-inertia", "full_service"): 1.05,
+    ("ltd-no-inertia", "minimum"): 77.29,
+    ("ltd", "emergency"): 9.86,
+    ("ltd", "full_service"): 7.20,
+    ("ltd", "minimum"): 77.45,
+    ("2d", "emergency"): 9.94,
+    ("2d", "full_service"): 7.18,
+    ("2d", "minimum"): 77.42,
 }
 
 # Table 2: the 2D train on 243 cores: wall time [s], CPU time of all cores [s].
@@ -38,8 +44,14 @@ WAGON = 100  # Figure 9
 
 HERE = pathlib.Path(__file__).resolve().parent
 # In the source tree, in an install space.
-CONFIG = next((folder for folder in (HERE.parents[1] / "config", HERE.parents[3] / "share" / "train_brake" / "config")
-               if folder.is_dir()), HERE)
+CONFIG = next(
+    (
+        folder
+        for folder in (HERE.parents[1] / "config", HERE.parents[3] / "share" / "train_brake" / "config")
+        if folder.is_dir()
+    ),
+    HERE,
+)
 # What a run of the paper may have otherwise; its duration is judged by its last record.
 FREE = {"name", "description", "model", "duration_s", "record_interval_s", "ledger_interval_s", "detail_vehicles"}
 
@@ -48,8 +60,22 @@ FREE = {"name", "description", "model", "duration_s", "record_interval_s", "ledg
 def _configuration(scenario: str, train_sim: Tuple[str, ...]) -> dict:
     """Of a scenario of the paper, with all its parts, as train_sim writes it. Raises OSError, CalledProcessError."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([*train_sim, "run", str(CONFIG / "scenarios" / f"{scenario}.yaml"), "--out", folder, "--model", "ltd",
-                        "--set", "duration_s=0.01"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                *train_sim,
+                "run",
+                str(CONFIG / "scenarios" / f"{scenario}.yaml"),
+                "--out",
+                folder,
+                "--model",
+                "ltd",
+                "--set",
+                "duration_s=0.01",
+            ],
+            check=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         return yaml.safe_load((pathlib.Path(folder) / "config.yaml").read_text(encoding="utf-8"))
 
 
@@ -70,13 +96,25 @@ def difference(value, papers, where: str = "") -> str:
 
 def judge(run, train_sim: Sequence[str]) -> None:
     """Whether the run is one of the paper's; a note says why one that is called so is not."""
-    if not (run.scenario in SCENARIOS and run.model in MODELS and run.vehicles == VEHICLES
-            and run.complete is not False and abs(run.end_s - DURATION_S[run.scenario]) < 0.02):
+    if not (
+        run.scenario in SCENARIOS
+        and run.model in MODELS
+        and run.vehicles == VEHICLES
+        and run.complete is not False
+        and abs(run.end_s - DURATION_S[run.scenario]) < 0.02
+    ):
         return
     try:
-        reason = "its configuration is not known" if run.config is None else difference(
-            *({key: value for key, value in config.items() if key not in FREE}
-              for config in (run.config, _configuration(run.scenario, tuple(train_sim)))))
+        reason = (
+            "its configuration is not known"
+            if run.config is None
+            else difference(
+                *(
+                    {key: value for key, value in config.items() if key not in FREE}
+                    for config in (run.config, _configuration(run.scenario, tuple(train_sim)))
+                )
+            )
+        )
     except (OSError, subprocess.CalledProcessError):
         reason = "train_sim, which knows the paper's configuration, cannot be run"
     run.is_of_paper = not reason

@@ -43,8 +43,10 @@ class Run:
         proved = summary is not None and self.digest is not None and summary.get("state_digest") == self.digest
         belong = proved or is_named
         if belong and summary is not None and self.digest is not None and not proved:
-            self.notes.append("The last record of the bag is not the last of the run (summary.json has another digest): the "
-                              "end of the bag is missing.")
+            self.notes.append(
+                "The last record of the bag is not the last of the run (summary.json has another digest): the "
+                "end of the bag is missing."
+            )
         self.summary = summary if belong else None
         self.config_file = folder / "config.yaml" if belong and (folder / "config.yaml").exists() else None
         self.slides_file = folder / "slides.csv" if belong and (folder / "slides.csv").exists() else None
@@ -64,14 +66,17 @@ class Run:
         self.has_all_records = not begins_late and not gaps.any()  # up to its end
         if usual > 0.0 and gaps.any():
             missing = int(numpy.round(intervals[gaps] / usual - 1).sum())
-            self.notes.append(f"{missing} records are missing from the bag, the first after "
-                              f"{table.time_s[:-1][gaps][0]:.2f} s.")
+            self.notes.append(
+                f"{missing} records are missing from the bag, the first after " f"{table.time_s[:-1][gaps][0]:.2f} s."
+            )
         if self.complete is False and self.reached_its_end is not False:
             self.notes.append("INCOMPLETE: only a part of the run was recorded.")
         elif self.complete is False:
-            self.notes.append(f"INCOMPLETE: the run ended at {self.end_s:.2f} s"
-                              + (f" of {self.config['duration_s']:g} s" if self.config else "")
-                              + (f", because {self.summary['fault']}." if self.fault else ", stopped by its user or cut off."))
+            self.notes.append(
+                f"INCOMPLETE: the run ended at {self.end_s:.2f} s"
+                + (f" of {self.config['duration_s']:g} s" if self.config else "")
+                + (f", because {self.summary['fault']}." if self.fault else ", stopped by its user or cut off.")
+            )
 
     @property
     def records(self):
@@ -119,8 +124,11 @@ class Run:
     @property
     def vehicles(self) -> int:
         r = self.recording
-        for table, field, more in ((r.state, "position_m", 0), (r.pressures, "cylinder_pressure_pa", 0),
-                                   (r.forces, "coupler_force_n", 1)):
+        for table, field, more in (
+            (r.state, "position_m", 0),
+            (r.pressures, "cylinder_pressure_pa", 0),
+            (r.forces, "coupler_force_n", 1),
+        ):
             if table is not None:
                 return table[field].shape[1] + more
         return max(r.detailed_vehicles)
@@ -165,7 +173,9 @@ class Run:
             kind, *value = given["command"].split()
             command = {"time_s": given["time_s"], "kind": kind}
             if value:
-                command[{"apply": "reduction_kpa", "independent_brake": "pressure_kpa"}.get(kind, "notch")] = float(value[0])
+                command[{"apply": "reduction_kpa", "independent_brake": "pressure_kpa"}.get(kind, "notch")] = float(
+                    value[0]
+                )
             timed.append(command)
         return sorted(timed, key=lambda command: command["time_s"])
 
@@ -183,9 +193,12 @@ def scenario_of(given: pathlib.Path) -> str:
 
 def label_runs(runs: List[Run]) -> None:
     """Names each run by what tells it from the others: its model, else its scenario, its folder, its path."""
-    for name in (lambda r: MODEL_NAMES.get(r.model, r.model), lambda r: r.scenario,
-                 lambda r: r.given.stem if r.given.suffix == ".bag" and r.given.stem != "train" else r.bag.parent.name,
-                 lambda r: str(r.given)):
+    for name in (
+        lambda r: MODEL_NAMES.get(r.model, r.model),
+        lambda r: r.scenario,
+        lambda r: r.given.stem if r.given.suffix == ".bag" and r.given.stem != "train" else r.bag.parent.name,
+        lambda r: str(r.given),
+    ):
         labels = [name(run) for run in runs]
         if len(set(labels)) == len(runs) and all(label.strip() for label in labels):
             break

@@ -35,6 +35,12 @@ def find_slides(state: Table) -> List[Slide]:
         parts = numpy.split(records, numpy.flatnonzero(numpy.diff(state.time_s[records]) > JOINED_S) + 1)
         for part in parts:
             during = creepage[part, vehicle]
-            slides.append(Slide(int(vehicle) + 1, float(state.time_s[part[0]]), float(state.time_s[part[-1]]),
-                                float(during[numpy.abs(during).argmax()])))
+            slides.append(
+                Slide(
+                    int(vehicle) + 1,
+                    float(state.time_s[part[0]]),
+                    float(state.time_s[part[-1]]),
+                    float(during[numpy.abs(during).argmax()]),
+                )
+            )
     return sorted(slides, key=lambda slide: (slide.begin_s, slide.vehicle))

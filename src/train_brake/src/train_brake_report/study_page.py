@@ -77,14 +77,22 @@ def _against(study: Study, rows: Rows, x: str, others: Sequence[str], result: st
             low, middle, high = (numpy.array([numpy.percentile(at[place], p) for place in where]) for p in (5, 50, 95))
             if names:  # between names there is nothing; lines of several sets stand side by side
                 where = [place + 0.12 * (i - (len(shown) - 1) / 2) for place in where]
-                axes.errorbar(where, middle, (middle - low, high - middle), fmt="o", color=colour, capsize=6, label=label)
+                axes.errorbar(
+                    where, middle, (middle - low, high - middle), fmt="o", color=colour, capsize=6, label=label
+                )
             else:
                 axes.fill_between(where, low, high, color=colour, alpha=0.25, linewidth=0)
                 axes.plot(where, middle, "o-", color=colour, markersize=5, label=label)
         else:
             line = "o" if names else "o-"
-            axes.plot([place for place in where for _ in at[place]], [y for place in where for y in at[place]], line, color=colour,
-                      markersize=5, label=label)
+            axes.plot(
+                [place for place in where for _ in at[place]],
+                [y for place in where for y in at[place]],
+                line,
+                color=colour,
+                markersize=5,
+                label=label,
+            )
     if names:
         axes.set_xticks(range(len(names)), names)
         axes.set_xlim(-0.5, len(names) - 0.5)
@@ -92,12 +100,25 @@ def _against(study: Study, rows: Rows, x: str, others: Sequence[str], result: st
     axes.set_ylabel(title)
     if others and len(shown) > 1:
         style.legend_above(axes, 2)
-    more = f" The first {MOST_LINES} of {len(groups)} sets of values are shown; results.csv has all." if len(groups) > MOST_LINES else ""
-    band = f" Points: median of {study.asked['draws']} draws; band or bars: from the 5th to the 95th percentile." if drawn else ""
+    more = (
+        f" The first {MOST_LINES} of {len(groups)} sets of values are shown; results.csv has all."
+        if len(groups) > MOST_LINES
+        else ""
+    )
+    band = (
+        f" Points: median of {study.asked['draws']} draws; band or bars: from the 5th to the 95th percentile."
+        if drawn
+        else ""
+    )
     missing = sum(not is_number(row.get(result)) for row in rows)
     without = f" {missing} run(s) have no such result." if missing else ""
     name = "".join(c if c.isalnum() else "_" for c in f"{result}_over_{x}")
-    return Figure(name, f"{title.split(' [')[0]} over {x}", f"A point per run.{more}{without}" if not drawn else band.strip() + more + without, canvas)
+    return Figure(
+        name,
+        f"{title.split(' [')[0]} over {x}",
+        f"A point per run.{more}{without}" if not drawn else band.strip() + more + without,
+        canvas,
+    )
 
 
 def _ensemble(rows: Rows, result: str, drawn: Sequence[str]) -> Figure:
@@ -119,8 +140,12 @@ def _ensemble(rows: Rows, result: str, drawn: Sequence[str]) -> Figure:
         axes.tick_params(axis="x", labelrotation=20)
     low, middle, high = numpy.percentile(values, (5, 50, 95))
     name = "".join(c if c.isalnum() else "_" for c in f"{result}_of_draws")
-    return Figure(name, f"{title.split(' [')[0]} of {len(values)} draws",
-                  minus(f"5 % of the runs are below {low:.6g}, half below {middle:.6g}, 95 % below {high:.6g}."), canvas)
+    return Figure(
+        name,
+        f"{title.split(' [')[0]} of {len(values)} draws",
+        minus(f"5 % of the runs are below {low:.6g}, half below {middle:.6g}, 95 % below {high:.6g}."),
+        canvas,
+    )
 
 
 def _cell(value: Any) -> str:
@@ -132,16 +157,24 @@ def _cell(value: Any) -> str:
 def _percentile_table(study: Study, rows: Rows, results: Sequence[str]) -> Figure:
     lines = [line for line in percentiles(study, rows) if line["result"] in results]
     head = [name for name in lines[0] if name not in ("runs", "standard_deviation")]
-    return Figure("percentiles", "Percentiles over the draws", "Forces in N. percentiles.csv has every result.",
-                  table=Table(head, [[_cell(line[name]) for name in head] for line in lines]))
+    return Figure(
+        "percentiles",
+        "Percentiles over the draws",
+        "Forces in N. percentiles.csv has every result.",
+        table=Table(head, [[_cell(line[name]) for name in head] for line in lines]),
+    )
 
 
 def _run_table(study: Study, rows: Rows, results: Sequence[str]) -> Figure:
     most = 200
     head = ["run", *study.paths, *results]
     more = f" The first {most} of {len(rows)} runs." if len(rows) > most else ""
-    return Figure("runs", "Runs", f"Forces in N. results.csv has every number of every run; runs/NUMBER/config.yaml runs again.{more}",
-                  table=Table(head, [[_cell(row.get(name)) for name in head] for row in rows[:most]]))
+    return Figure(
+        "runs",
+        "Runs",
+        f"Forces in N. results.csv has every number of every run; runs/NUMBER/config.yaml runs again.{more}",
+        table=Table(head, [[_cell(row.get(name)) for name in head] for row in rows[:most]]),
+    )
 
 
 def figures_of(study: Study, rows: Rows, results: Sequence[str]) -> List[Figure]:

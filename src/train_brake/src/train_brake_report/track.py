@@ -24,7 +24,7 @@ class Steps:
         """Under a train from its rear to its front, position by position."""
         first = numpy.maximum(numpy.searchsorted(self.from_m, rear_m, side="right") - 1, 0)
         last = numpy.maximum(numpy.searchsorted(self.from_m, front_m, side="right") - 1, 0)
-        return numpy.array([self.value[a:b + 1].min() for a, b in zip(first, last)])
+        return numpy.array([self.value[a : b + 1].min() for a, b in zip(first, last)])
 
     def line(self, begin_m: float, end_m: float) -> Tuple[numpy.ndarray, numpy.ndarray]:
         """Its corners between two positions, to be drawn as straight lines."""
@@ -37,16 +37,20 @@ class Track:
     """A track of config.yaml; grades as ratio, curvatures in 1/m to the right positive, limits in km/h."""
 
     def __init__(self, config: dict):
-        points = [dict(point, at=point["position_m"] if "position_m" in point else 1e3 * point["position_km"])
-                  for point in config.get("points") or []]
+        points = [
+            dict(point, at=point["position_m"] if "position_m" in point else 1e3 * point["position_km"])
+            for point in config.get("points") or []
+        ]
 
         def of_points(key: str, factor: float = 1.0) -> list:
             return [(point["at"], factor * point[key]) for point in points if key in point]
 
         heights = [(h["position_m"], h["height_m"]) for h in config.get("heights") or []] or of_points("height_m")
-        self.grades = Steps([(g["from_m"], 0.01 * g["grade_percent"]) for g in config.get("grades") or []]
-                            or sorted(of_points("grade_permille", 1e-3) + of_points("grade_percent", 0.01))
-                            or _grades_between(heights))
+        self.grades = Steps(
+            [(g["from_m"], 0.01 * g["grade_percent"]) for g in config.get("grades") or []]
+            or sorted(of_points("grade_permille", 1e-3) + of_points("grade_percent", 0.01))
+            or _grades_between(heights)
+        )
         curves = []
         for curve in config.get("curves") or []:
             if curves and curves[-1][0] == curve["from_m"]:
@@ -54,11 +58,17 @@ class Track:
             elif not curves:
                 curves.append((curve["from_m"] - 1.0, 0.0))
             curves += [(curve["from_m"], 1.0 / curve["radius_m"]), (curve["to_m"], 0.0)]
-        self.curvatures = Steps(curves or [(at, 1.0 / radius if radius else 0.0) for at, radius in of_points("radius_m")])
-        self.limits = Steps([(limit["from_m"], limit["limit_kmh"]) for limit in config.get("speed_limits") or []]
-                            or of_points("speed_limit_kmh"))
-        self.stations = sorted([(s["position_m"], s["name"]) for s in config.get("stations") or []]
-                               + [(point["at"], point["station"]) for point in points if point.get("station")])
+        self.curvatures = Steps(
+            curves or [(at, 1.0 / radius if radius else 0.0) for at, radius in of_points("radius_m")]
+        )
+        self.limits = Steps(
+            [(limit["from_m"], limit["limit_kmh"]) for limit in config.get("speed_limits") or []]
+            or of_points("speed_limit_kmh")
+        )
+        self.stations = sorted(
+            [(s["position_m"], s["name"]) for s in config.get("stations") or []]
+            + [(point["at"], point["station"]) for point in points if point.get("station")]
+        )
         self._known: Optional[Tuple[float, float]] = heights[0] if heights else None
 
     def heights(self, begin_m: float, end_m: float) -> Tuple[numpy.ndarray, numpy.ndarray]:

@@ -48,8 +48,11 @@ class Wave:
         """Vehicles, from 1, where waves are seen to begin, and when: before both of their neighbours."""
         starts = {b.first if b.sign > 0 else b.last for b in self.branches}
         around = numpy.concatenate([[numpy.inf], self.arrival_s, [numpy.inf]])  # of vehicle i: i and i + 2
-        return [(i + 1, float(self.arrival_s[i])) for i in sorted(starts)
-                if self.arrival_s[i] <= around[i] and self.arrival_s[i] <= around[i + 2]]
+        return [
+            (i + 1, float(self.arrival_s[i]))
+            for i in sorted(starts)
+            if self.arrival_s[i] <= around[i] and self.arrival_s[i] <= around[i + 2]
+        ]
 
 
 def arrivals(time_s: numpy.ndarray, pressure_pa: numpy.ndarray) -> numpy.ndarray:
@@ -78,12 +81,19 @@ def _branches(arrival_s: numpy.ndarray, distance_m: numpy.ndarray) -> List[Tuple
     kind = numpy.where(steady, numpy.sign(slowness), 0)
     edges = numpy.flatnonzero(numpy.diff(kind)) + 1
     stretches = zip(numpy.concatenate([[0], edges]), numpy.concatenate([edges, [len(kind)]]))
-    return [(int(a), int(b) - 1, 1) if kind[a] > 0 else (int(a) + 1, int(b), -1)
-            for a, b in stretches if kind[a] != 0 and b - a >= 3]
+    return [
+        (int(a), int(b) - 1, 1) if kind[a] > 0 else (int(a) + 1, int(b), -1)
+        for a, b in stretches
+        if kind[a] != 0 and b - a >= 3
+    ]
 
 
-def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.ndarray,
-        moving: Callable[[numpy.ndarray], numpy.ndarray] = lambda arrival_s: numpy.zeros(len(arrival_s), bool)) -> Wave:
+def fit(
+    time_s: numpy.ndarray,
+    pressure_pa: numpy.ndarray,
+    distance_m: numpy.ndarray,
+    moving: Callable[[numpy.ndarray], numpy.ndarray] = lambda arrival_s: numpy.zeros(len(arrival_s), bool),
+) -> Wave:
     """Raises LeftOut if no wave is to be seen. moving: at which vehicles, by their arrivals, it had begun before."""
     if len(distance_m) < 4:
         raise LeftOut("A wave is seen on a train of four vehicles or more.")
@@ -91,8 +101,10 @@ def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.nda
     before = moving(arrival)
     arrival[before] = numpy.nan
     if before.any() and numpy.isfinite(arrival).sum() < 4:
-        raise LeftOut(f"The pressures of {before.sum()} of {len(before)} vehicles had begun to move before the recording: "
-                      "when the wave reached them is not known.")
+        raise LeftOut(
+            f"The pressures of {before.sum()} of {len(before)} vehicles had begun to move before the recording: "
+            "when the wave reached them is not known."
+        )
     if numpy.isfinite(arrival).sum() < 4:
         raise LeftOut("Fewer than four vehicles were seen to begin to brake or release.")
     stretches = _branches(arrival, distance_m)
@@ -100,20 +112,26 @@ def fit(time_s: numpy.ndarray, pressure_pa: numpy.ndarray, distance_m: numpy.nda
         raise LeftOut("The pressures begin to move in no order along the train that would be a wave.")
     cross = square = 0.0
     for first, last, sign in stretches:
-        d, t = distance_m[first:last + 1], arrival[first:last + 1]
+        d, t = distance_m[first : last + 1], arrival[first : last + 1]
         cross += sign * ((d - d.mean()) * (t - t.mean())).sum()
         square += ((d - d.mean()) ** 2).sum()
     slowness = cross / square
     branches, residuals = [], []
     for first, last, sign in stretches:
-        d, t = distance_m[first:last + 1], arrival[first:last + 1]
+        d, t = distance_m[first : last + 1], arrival[first : last + 1]
         branches.append(Branch(first, last, sign, t.mean() + sign * slowness * (d - d.mean())))
         residuals.append(t - branches[-1].time_s)
     residual = numpy.concatenate(residuals)
     freedom = max(1, len(residual) - len(branches) - 1)
-    slowness_error = numpy.sqrt((residual ** 2).sum() / freedom / square)
-    return Wave(arrival, distance_m, branches, 1.0 / slowness, slowness_error / slowness ** 2,
-                float(numpy.sqrt((residual ** 2).mean())))
+    slowness_error = numpy.sqrt((residual**2).sum() / freedom / square)
+    return Wave(
+        arrival,
+        distance_m,
+        branches,
+        1.0 / slowness,
+        slowness_error / slowness**2,
+        float(numpy.sqrt((residual**2).mean())),
+    )
 
 
 def _distances(run: Run) -> numpy.ndarray:

@@ -15,7 +15,11 @@ def _why_not(run: Run) -> str:
     reason = lacks(run, "pressures")
     if reason:
         return reason
-    return "" if run.recording.pressures["pipe_pressure_pa"].shape[1] else "its brake has no pipe: it is not of kind pneumatic"
+    return (
+        ""
+        if run.recording.pressures["pipe_pressure_pa"].shape[1]
+        else "its brake has no pipe: it is not of kind pneumatic"
+    )
 
 
 def _built_up(time_s: numpy.ndarray, mean: numpy.ndarray) -> str:
@@ -33,8 +37,10 @@ def _charged(time_s: numpy.ndarray, head_pa: numpy.ndarray, tail_pa: numpy.ndarr
         return ""
     if not (tail_pa >= goal).any():
         return f" The last vehicle's pipe is not charged to {100 * FULL:g} % of the first's within the run."
-    return (f" Charging: the last vehicle's pipe has {100 * FULL:g} % of the first's largest pressure after "
-            f"{time_s[(tail_pa >= goal).argmax()] - time_s[0]:.1f} s.")
+    return (
+        f" Charging: the last vehicle's pipe has {100 * FULL:g} % of the first's largest pressure after "
+        f"{time_s[(tail_pa >= goal).argmax()] - time_s[0]:.1f} s."
+    )
 
 
 def draw(group: Group) -> Figure:
@@ -44,9 +50,20 @@ def draw(group: Group) -> Figure:
     canvas = new_canvas(7.2)
     above, below = canvas.subplots(2, 1, sharex=True)
     for vehicle, colour in zip(sorted({1, (run.vehicles + 1) // 2, run.vehicles}), style.COLOURS):
-        above.plot(table.time_s, KPA * table["pipe_pressure_pa"][:, vehicle - 1], color=colour, label=f"pipe, vehicle {vehicle}")
-        above.plot(table.time_s, KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1], color=colour, linewidth=1.2,
-                   linestyle=(0, (4, 2)), label=f"auxiliary reservoir, vehicle {vehicle}")
+        above.plot(
+            table.time_s,
+            KPA * table["pipe_pressure_pa"][:, vehicle - 1],
+            color=colour,
+            label=f"pipe, vehicle {vehicle}",
+        )
+        above.plot(
+            table.time_s,
+            KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1],
+            color=colour,
+            linewidth=1.2,
+            linestyle=(0, (4, 2)),
+            label=f"auxiliary reservoir, vehicle {vehicle}",
+        )
     above.set_ylabel("pressure [kPa]")
     above.margins(x=0)
     style.legend_above(above, columns=3)
@@ -63,7 +80,9 @@ def draw(group: Group) -> Figure:
     style.mark_commands(below, group.commands())
     if len(with_cylinders) > 1:
         below.legend()
-    caption = (f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all cylinders, "
-               "to which the brake force is proportional. Build-up: " + "; ".join(told) + "."
-               + _charged(table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1]))
+    caption = f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all cylinders, " "to which the brake force is proportional. Build-up: " + "; ".join(
+        told
+    ) + "." + _charged(
+        table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1]
+    )
     return Figure("air_brake", "Air in the brake", caption + not_shown, canvas)

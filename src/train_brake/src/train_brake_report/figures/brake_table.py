@@ -33,7 +33,9 @@ def draw(group: Group) -> Figure:
     below.set_ylabel("wave speed [m/s]")
     below.set_xlabel("total reduction of the brake pipe [kPa]")
     style.legend_above(above)
-    caption = (f"The brake {brake.get('name', '')}: steady cylinder pressure and speed of the brake wave over the total reduction. "
-               "The paper's Figure 1 prints curves and no numbers; points were read from it, between them the model takes a "
-               f"monotone cubic. The thin line is a valve of 2.5 : 1.{not_shown}")
+    caption = (
+        f"The brake {brake.get('name', '')}: steady cylinder pressure and speed of the brake wave over the total reduction. "
+        "The paper's Figure 1 prints curves and no numbers; points were read from it, between them the model takes a "
+        f"monotone cubic. The thin line is a valve of 2.5 : 1.{not_shown}"
+    )
     return Figure("brake_table", "Cylinder pressure and wave speed over the reduction", caption, canvas)

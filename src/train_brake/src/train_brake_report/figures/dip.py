@@ -30,9 +30,14 @@ def draw(group: Group) -> Figure:
         raise LeftOut("The track has no dip.")
     wagon = run.recording.wagon
     if wagon is None:
-        raise LeftOut(f"Vehicle {group.wagon} was not recorded in detail"
-                      + (f"; these were: {', '.join(map(str, run.recording.detailed_vehicles))}."
-                         if run.recording.detailed_vehicles else ", nor any other."))
+        raise LeftOut(
+            f"Vehicle {group.wagon} was not recorded in detail"
+            + (
+                f"; these were: {', '.join(map(str, run.recording.detailed_vehicles))}."
+                if run.recording.detailed_vehicles
+                else ", nor any other."
+            )
+        )
     dip = run.config["track"]["dips"][0]
     shown = _passage(wagon, run.config, dip)
     time_s = wagon.time_s[shown]
@@ -51,8 +56,13 @@ def draw(group: Group) -> Figure:
     half = run.config["train"]["consist"][0]["vehicle"]["half_wheelset_spacing_m"]
     geometric = MRAD * dip["depth_m"] * numpy.sin(2 * numpy.pi * half / dip["length_m"]) / (2 * half)
     for sign in (-1, 1):
-        below.axhline(sign * geometric, color=style.MUTED, linewidth=1.0, linestyle=(0, (4, 3)),
-                      label="frame, by geometry alone" if sign > 0 else None)
+        below.axhline(
+            sign * geometric,
+            color=style.MUTED,
+            linewidth=1.0,
+            linestyle=(0, (4, 3)),
+            label="frame, by geometry alone" if sign > 0 else None,
+        )
     below.set_ylabel("pitch, nose down [mrad]")
     below.set_xlabel("time [s]")
     for axes in (above, below):
@@ -60,8 +70,10 @@ def draw(group: Group) -> Figure:
     style.legend_above(below)
 
     frame = pitch[:, FRAME_FRONT]
-    caption = (f"Dip of {1e3 * dip['depth_m']:g} mm on {dip['length_m']:g} m at {run.config['initial_speed_kmh']:g} km/h. "
-               f"The wheel's force goes from {force_kn.min():.1f} to {force_kn.max():.1f} kN, {force_kn[0]:.1f} before; the "
-               f"frame pitches by {minus(f'{frame.min():.2f}')} ... {minus(f'{frame.max():+.2f}')} mrad, where a rigid frame on the rail's shape "
-               f"would by ±{geometric:.2f}. The paper prints no numbers of it.")
+    caption = (
+        f"Dip of {1e3 * dip['depth_m']:g} mm on {dip['length_m']:g} m at {run.config['initial_speed_kmh']:g} km/h. "
+        f"The wheel's force goes from {force_kn.min():.1f} to {force_kn.max():.1f} kN, {force_kn[0]:.1f} before; the "
+        f"frame pitches by {minus(f'{frame.min():.2f}')} ... {minus(f'{frame.max():+.2f}')} mrad, where a rigid frame on the rail's shape "
+        f"would by ±{geometric:.2f}. The paper prints no numbers of it."
+    )
     return Figure("dip", "A wagon over the dip", caption, canvas)

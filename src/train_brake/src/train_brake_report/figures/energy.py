@@ -16,8 +16,10 @@ def _series(run: Run) -> tuple:
     """(times, energies [J] by name, initial [J], residual [J])."""
     ledger = run.recording.ledger
     time_s = numpy.array([m.header.stamp.to_sec() for m in ledger])
-    energies = {"kinetic": numpy.array([m.kinetic_j for m in ledger]),
-                "potential": numpy.array([m.potential_j for m in ledger])}
+    energies = {
+        "kinetic": numpy.array([m.kinetic_j for m in ledger]),
+        "potential": numpy.array([m.potential_j for m in ledger]),
+    }
     for i, element in enumerate(ledger[-1].element):
         energies[element.replace("_", " ")] = numpy.array([m.dissipated_j[i] for m in ledger])
     return time_s, energies, ledger[0].initial_j, numpy.array([m.residual_j for m in ledger])
@@ -45,10 +47,18 @@ def draw(group: Group) -> Figure:
 
     dissipated = {name: e for name, e in energies.items() if name not in ("kinetic", "potential")}
     large = {"kinetic": energies["kinetic"]}
-    large.update(sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * initial_j), key=lambda item: -item[1][-1]))
+    large.update(
+        sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * initial_j), key=lambda item: -item[1][-1])
+    )
     rest = sum(dissipated.values()) - sum(e for n, e in large.items() if n != "kinetic")
-    stack.stackplot(time_s, [MJ * e for e in large.values()] + [MJ * rest], colors=style.COLOURS[:len(large)] + [style.MUTED],
-                    labels=list(large) + ["everything else"], alpha=0.85, linewidth=0)
+    stack.stackplot(
+        time_s,
+        [MJ * e for e in large.values()] + [MJ * rest],
+        colors=style.COLOURS[: len(large)] + [style.MUTED],
+        labels=list(large) + ["everything else"],
+        alpha=0.85,
+        linewidth=0,
+    )
     stack.set_ylabel("energy [MJ]")
     style.legend_above(stack, columns=5 if len(large) < 5 else 4)
 
@@ -65,9 +75,11 @@ def draw(group: Group) -> Figure:
     for axes in (stack, single, below):
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is stack)
-    caption = ("Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
-               "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
-               f"{numpy.median(numpy.diff(time_s)):g} s.")
+    caption = (
+        "Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
+        "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
+        f"{numpy.median(numpy.diff(time_s)):g} s."
+    )
     if len(group.runs) > 1:
         caption += f" Top and middle: {shown.label}."
     gravity = shown.recording.ledger[-1].gravity_work_j
@@ -85,8 +97,14 @@ def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
     ends = []
     for i, (name, e) in enumerate(sorted(taken.items(), key=lambda item: -item[1][-1])):
         colour = style.COLOURS[i % len(style.COLOURS)]
-        axes.semilogy(time_s, numpy.where(e > smallest, e, numpy.nan), color=colour, marker=".", markersize=3,
-                      linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)))
+        axes.semilogy(
+            time_s,
+            numpy.where(e > smallest, e, numpy.nan),
+            color=colour,
+            marker=".",
+            markersize=3,
+            linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)),
+        )
         ends.append((e[-1], name, colour))
     axes.set_ylabel("dissipated [J]")
     style.powers_of_ten(axes.yaxis)

@@ -27,8 +27,9 @@ def draw(group: Group) -> Figure:
     axes = canvas.subplots()
     caption = "Pressure in the brake cylinders above the atmosphere."
     for vehicle, colour in zip(shown, style.COLOURS):
-        axes.plot(first.recording.pressures.time_s, pressures[first][:, vehicle - 1], color=colour,
-                  label=f"vehicle {vehicle}")
+        axes.plot(
+            first.recording.pressures.time_s, pressures[first][:, vehicle - 1], color=colour, label=f"vehicle {vehicle}"
+        )
     for run in others:
         a, b = common_rows(first.recording.pressures.time_s, run.recording.pressures.time_s)
         difference = float(numpy.abs(pressures[run][b] - pressures[first][a]).max())
@@ -36,8 +37,13 @@ def draw(group: Group) -> Figure:
             caption += f" {run.label} has the same."
             continue
         for vehicle, colour in zip(shown, style.COLOURS):
-            axes.plot(run.recording.pressures.time_s, pressures[run][:, vehicle - 1], color=colour, linewidth=1.2,
-                      linestyle=(0, (4, 2)))
+            axes.plot(
+                run.recording.pressures.time_s,
+                pressures[run][:, vehicle - 1],
+                color=colour,
+                linewidth=1.2,
+                linestyle=(0, (4, 2)),
+            )
         caption += f" Dashed: {run.label}, which differs from {first.label} by up to {difference:.1f} kPa."
     axes.set_xlabel("time [s]")
     axes.set_ylabel("cylinder pressure [kPa]")

@@ -43,8 +43,14 @@ def draw(group: Group) -> Figure:
     kinds += ["height", "grade"] * bool(track.grades) + ["curvature"] * bool(track.curvatures)
     sizes = {"speed": 3.2, "forces": 2.4, "pressures": 1.7, "height": 1.6, "grade": 1.5, "curvature": 1.5}
     canvas = new_canvas(sum(sizes[kind] for kind in kinds))
-    panels = dict(zip(kinds, canvas.subplots(len(kinds), 1, sharex=True, squeeze=False,
-                                             height_ratios=[sizes[kind] for kind in kinds])[:, 0]))
+    panels = dict(
+        zip(
+            kinds,
+            canvas.subplots(len(kinds), 1, sharex=True, squeeze=False, height_ratios=[sizes[kind] for kind in kinds])[
+                :, 0
+            ],
+        )
+    )
     at_m = {run: front_m(run) for run in runs}
     begin_m = min(at.min() for at in at_m.values())
     end_m = max(at.max() for at in at_m.values())
@@ -57,8 +63,14 @@ def draw(group: Group) -> Figure:
     if track.limits:
         order = numpy.argsort(at_m[first], kind="stable")
         permitted = permitted_kmh(first, track)
-        panels["speed"].plot(KM * at_m[first][order], permitted[order], color=style.INK, linewidth=1.3, linestyle=(0, (4, 2)),
-                             label="lowest limit under the train")
+        panels["speed"].plot(
+            KM * at_m[first][order],
+            permitted[order],
+            color=style.INK,
+            linewidth=1.3,
+            linestyle=(0, (4, 2)),
+            label="lowest limit under the train",
+        )
         caption += " Dashed: the lowest speed limit under the whole train."
     if len(runs) > 1 or track.limits:
         style.legend_above(panels["speed"])
@@ -73,7 +85,9 @@ def draw(group: Group) -> Figure:
         caption += " Coupler forces: the largest tension (positive) and compression anywhere in the train."
     for run in with_pressures:
         at = numpy.interp(run.recording.pressures.time_s, run.recording.state.time_s, at_m[run])
-        panels["pressures"].plot(KM * at, KPA * run.recording.pressures["cylinder_pressure_pa"].mean(axis=1), **group.line(run))
+        panels["pressures"].plot(
+            KM * at, KPA * run.recording.pressures["cylinder_pressure_pa"].mean(axis=1), **group.line(run)
+        )
     if with_pressures:
         panels["pressures"].set_ylabel("mean cylinder\npressure [kPa]")
     _draw_route(panels, track, begin_m, end_m)
@@ -88,8 +102,9 @@ def _draw_route(panels: dict, track: Track, begin_m: float, end_m: float) -> Non
     if track.grades:
         at_m, height_m = track.heights(begin_m, end_m)
         panels["height"].plot(KM * at_m, height_m, color=style.INK)
-        panels["height"].fill_between(KM * at_m, height_m, height_m.min() - 0.1 * numpy.ptp(height_m), color=style.MUTED,
-                                      alpha=0.2, linewidth=0)
+        panels["height"].fill_between(
+            KM * at_m, height_m, height_m.min() - 0.1 * numpy.ptp(height_m), color=style.MUTED, alpha=0.2, linewidth=0
+        )
         panels["height"].set_ylabel("height [m]")
         at_m, grade = track.grades.line(begin_m, end_m)
         panels["grade"].plot(KM * at_m, PERMILLE * grade, color=style.BLUE)
@@ -110,9 +125,17 @@ def _draw_route(panels: dict, track: Track, begin_m: float, end_m: float) -> Non
             continue  # no room for the name
         last = at_m
         near_end = at_m > end_m - 0.1 * (end_m - begin_m)
-        panels.get("height", panels["speed"]).annotate(name, (KM * at_m, 1.0), (-3 if near_end else 3, -2), xycoords=("data", "axes fraction"),
-                                  textcoords="offset points", va="top", ha="right" if near_end else "left", fontsize=9.5,
-                                  color=style.MUTED)
+        panels.get("height", panels["speed"]).annotate(
+            name,
+            (KM * at_m, 1.0),
+            (-3 if near_end else 3, -2),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            va="top",
+            ha="right" if near_end else "left",
+            fontsize=9.5,
+            color=style.MUTED,
+        )
 
 
 def braking_distance_m(run: Run) -> list:
@@ -138,8 +161,10 @@ def _percentiles(run: Run) -> dict:
     """Of all recorded forces of all connections [kN]: name -> (tension, compression)."""
     forces = KN * run.recording.forces["coupler_force_n"]
     tension, compression = numpy.maximum(forces, 0.0), numpy.maximum(-forces, 0.0)
-    return {name: (float(numpy.percentile(tension, share)), float(numpy.percentile(compression, share)))
-            for name, share in (("50 %", 50), ("95 %", 95), ("99 %", 99), ("largest", 100))}
+    return {
+        name: (float(numpy.percentile(tension, share)), float(numpy.percentile(compression, share)))
+        for name, share in (("50 %", 50), ("95 %", 95), ("99 %", 99), ("largest", 100))
+    }
 
 
 def _quantities(run: Run) -> list:
@@ -157,20 +182,32 @@ def _quantities(run: Run) -> list:
                     kj_per_tkm = 1e-3 * energy[key] / (mass_t * KM * way_m)
                     rows.append((f"{name} per tonne and km", minus(f"{kj_per_tkm:.1f} kJ ({kj_per_tkm / 3.6:.2f} Wh)")))
     for time_s, distance_m, begin_s in braking_distance_m(run):
-        rows.append((f"braking distance of the stop at {time_s:.1f} s",
-                     f"{distance_m:.1f} m from the first pressure in a cylinder at {begin_s:.1f} s"))
+        rows.append(
+            (
+                f"braking distance of the stop at {time_s:.1f} s",
+                f"{distance_m:.1f} m from the first pressure in a cylinder at {begin_s:.1f} s",
+            )
+        )
     if run.recording.forces is not None and run.vehicles > 1:
         shares = _percentiles(run)
         for side, name in enumerate(("tension", "compression")):
-            rows.append((f"in-train {name}, percentiles of all records and connections",
-                         ", ".join(f"{share}: {values[side]:.0f} kN" for share, values in shares.items())))
+            rows.append(
+                (
+                    f"in-train {name}, percentiles of all records and connections",
+                    ", ".join(f"{share}: {values[side]:.0f} kN" for share, values in shares.items()),
+                )
+            )
     if state is not None and run.config is not None:
         track = Track(run.config["track"])
         if track.limits:
             excess = numpy.abs(run.mean_speed_kmh) - permitted_kmh(run, track)
             over_s = float(((excess > 0.0)[:-1] * numpy.diff(state.time_s)).sum())
-            rows.append(("above the lowest limit under the train",
-                         f"{over_s:.1f} s, by up to {excess.max():.1f} km/h" if over_s > 0.0 else "never"))
+            rows.append(
+                (
+                    "above the lowest limit under the train",
+                    f"{over_s:.1f} s, by up to {excess.max():.1f} km/h" if over_s > 0.0 else "never",
+                )
+            )
     return rows
 
 
@@ -182,25 +219,69 @@ def quantities(group: Group) -> Figure:
     if not names:
         raise LeftOut("The recording has nothing that this table needs.")
     values = {run: dict(rows) for run, rows in columns.items()}
-    return Figure("engineering_numbers", "Engineering numbers",
-                  "Percentiles count every record of every connection once. kJ per tonne and km refer to the whole train's mass.",
-                  table=Table([""] + [run.label for run in group.runs],
-                              [[name] + [values[run].get(name, "") for run in group.runs] for name in names]))
+    return Figure(
+        "engineering_numbers",
+        "Engineering numbers",
+        "Percentiles count every record of every connection once. kJ per tonne and km refer to the whole train's mass.",
+        table=Table(
+            [""] + [run.label for run in group.runs],
+            [[name] + [values[run].get(name, "") for run in group.runs] for name in names],
+        ),
+    )
 
 
 def consist_table(group: Group) -> Figure:
-    runs, not_shown = group.drawable(lambda run: "" if run.config else "the train is not known without the scenario of the run")
+    runs, not_shown = group.drawable(
+        lambda run: "" if run.config else "the train is not known without the scenario of the run"
+    )
     run = runs[0]
     rows = []
     for first, last, item in consist.groups(run.config["train"]):
         vehicle, count = item["vehicle"], item["count"]
         mass_t = 1e-3 * consist.mass_kg(vehicle)
-        rows.append([f"{first}" if first == last else f"{first} to {last}", vehicle.get("name", ""), f"{count}",
-                     item.get("model") or run.config["model"], f"{mass_t:.1f}", f"{count * mass_t:.1f}",
-                     f"{vehicle['length_m']:g}", f"{count * vehicle['length_m']:.1f}",
-                     f"{vehicle['load_fraction']:g}" if vehicle.get("load") and "load_fraction" in vehicle else ""])
-    rows.append(["all", "", f"{run.vehicles}", "", "", f"{1e-3 * run.masses_kg.sum():.1f}", "", f"{run.lengths_m.sum():.1f}", ""])
+        rows.append(
+            [
+                f"{first}" if first == last else f"{first} to {last}",
+                vehicle.get("name", ""),
+                f"{count}",
+                item.get("model") or run.config["model"],
+                f"{mass_t:.1f}",
+                f"{count * mass_t:.1f}",
+                f"{vehicle['length_m']:g}",
+                f"{count * vehicle['length_m']:.1f}",
+                f"{vehicle['load_fraction']:g}" if vehicle.get("load") and "load_fraction" in vehicle else "",
+            ]
+        )
+    rows.append(
+        [
+            "all",
+            "",
+            f"{run.vehicles}",
+            "",
+            "",
+            f"{1e-3 * run.masses_kg.sum():.1f}",
+            "",
+            f"{run.lengths_m.sum():.1f}",
+            "",
+        ]
+    )
     of = f" Of {run.label}." if len(group.runs) > 1 else ""
-    return Figure("consist", "Consist", f"From front to rear.{of}{not_shown}",
-                  table=Table(["vehicles", "kind", "count", "model", "mass of one [t]", "of the group [t]", "length of one [m]",
-                               "of the group [m]", "load fraction"], rows))
+    return Figure(
+        "consist",
+        "Consist",
+        f"From front to rear.{of}{not_shown}",
+        table=Table(
+            [
+                "vehicles",
+                "kind",
+                "count",
+                "model",
+                "mass of one [t]",
+                "of the group [t]",
+                "length of one [m]",
+                "of the group [m]",
+                "load fraction",
+            ],
+            rows,
+        ),
+    )

@@ -42,17 +42,57 @@ class Quantity:
         return table.time_s[known], values[known]
 
 
-FORCE = Quantity("coupler_force_picture", "Coupler force, whole train", "coupler force [kN]", "forces", "coupler_force_n",
-                 1e-3, True, "connection", "Orange is tension, blue compression: shocks run along the train as slanted lines.")
-PRESSURE = Quantity("pressure_picture", "Cylinder pressure, whole train", "cylinder pressure [kPa]", "pressures",
-                    "cylinder_pressure_pa", 1e-3, False, caption="The brake starts as a wedge at each source.")
-PIPE = Quantity("pipe_pressure_picture", "Brake pipe, whole train", "pipe pressure [kPa]", "pressures", "pipe_pressure_pa",
-                1e-3, False, caption="The fall in the pipe goes before the cylinders.")
-SLIP = Quantity("slip_picture", "Wheel slip, whole train", "creepage [%]", "state", "creepage", 100.0, False,
-                caption="Creepage of each vehicle's wheelset with the largest.")
-ACCELERATION = Quantity("acceleration_picture", "Acceleration, whole train", "acceleration [m/s²]", "state",
-                        "acceleration_mps2", 1.0, True, caption="Blue slows down. Slanted lines are shocks that run along "
-                        "the train.")
+FORCE = Quantity(
+    "coupler_force_picture",
+    "Coupler force, whole train",
+    "coupler force [kN]",
+    "forces",
+    "coupler_force_n",
+    1e-3,
+    True,
+    "connection",
+    "Orange is tension, blue compression: shocks run along the train as slanted lines.",
+)
+PRESSURE = Quantity(
+    "pressure_picture",
+    "Cylinder pressure, whole train",
+    "cylinder pressure [kPa]",
+    "pressures",
+    "cylinder_pressure_pa",
+    1e-3,
+    False,
+    caption="The brake starts as a wedge at each source.",
+)
+PIPE = Quantity(
+    "pipe_pressure_picture",
+    "Brake pipe, whole train",
+    "pipe pressure [kPa]",
+    "pressures",
+    "pipe_pressure_pa",
+    1e-3,
+    False,
+    caption="The fall in the pipe goes before the cylinders.",
+)
+SLIP = Quantity(
+    "slip_picture",
+    "Wheel slip, whole train",
+    "creepage [%]",
+    "state",
+    "creepage",
+    100.0,
+    False,
+    caption="Creepage of each vehicle's wheelset with the largest.",
+)
+ACCELERATION = Quantity(
+    "acceleration_picture",
+    "Acceleration, whole train",
+    "acceleration [m/s²]",
+    "state",
+    "acceleration_mps2",
+    1.0,
+    True,
+    caption="Blue slows down. Slanted lines are shocks that run along " "the train.",
+)
 
 
 def _round_up(value: float) -> float:
@@ -73,8 +113,9 @@ def _limit(values: numpy.ndarray) -> tuple:
 def _image(axes, rows: str, time_s: numpy.ndarray, values: numpy.ndarray, label: str, arrows: str, **colours) -> str:
     """Returns a sentence on what is missing; empty if nothing is."""
     picture, begin_s, end_s = decimate(time_s, values, COLUMNS)
-    image = axes.imshow(picture, aspect="auto", interpolation="nearest", extent=(begin_s, end_s, values.shape[1] + 0.5, 0.5),
-                        **colours)
+    image = axes.imshow(
+        picture, aspect="auto", interpolation="nearest", extent=(begin_s, end_s, values.shape[1] + 0.5, 0.5), **colours
+    )
     axes.set_xlim(time_s[0], time_s[-1])
     axes.grid(False)
     axes.set_ylabel(rows)
@@ -92,16 +133,30 @@ def _picture(axes, quantity: Quantity, time_s: numpy.ndarray, values: numpy.ndar
     beyond = largest > limit
     least = -limit if signed else 0.0
     arrows = ["neither", "max", "min", "both"][int(values.max() > limit) + 2 * int(values.min() < least - 0.01 * limit)]
-    missing = _image(axes, quantity.rows, time_s, values, label, arrows, cmap=style.DIVERGING if signed else style.SEQUENTIAL,
-                     vmin=least, vmax=limit)
+    missing = _image(
+        axes,
+        quantity.rows,
+        time_s,
+        values,
+        label,
+        arrows,
+        cmap=style.DIVERGING if signed else style.SEQUENTIAL,
+        vmin=least,
+        vmax=limit,
+    )
     sign = "±" if signed else ""
-    unit = quantity.unit[quantity.unit.index("[") + 1:-1]
-    return (f"Colours end at {sign}{limit:g} {unit}" + (f" (99.9 % of the values; the largest is {largest:.3g})" if beyond
-                                                        else "") + "." + missing)
+    unit = quantity.unit[quantity.unit.index("[") + 1 : -1]
+    return (
+        f"Colours end at {sign}{limit:g} {unit}"
+        + (f" (99.9 % of the values; the largest is {largest:.3g})" if beyond else "")
+        + "."
+        + missing
+    )
 
 
 def _series(quantity: Quantity, group: Group, least_rows: int = 2) -> Tuple[dict, str]:
     """({run: (times, values)} of the runs that can be drawn, a sentence on the others); LeftOut if there are none."""
+
     def why_not(run: Run) -> str:
         reason = lacks(run, quantity.table)
         if reason:
@@ -110,11 +165,15 @@ def _series(quantity: Quantity, group: Group, least_rows: int = 2) -> Tuple[dict
         if quantity is PIPE and not values.shape[1]:
             return "its brake has no pipe: it is not of kind pneumatic"
         if len(time_s) < 2:
-            return "the LTD models have no wheels that could slip" if quantity is SLIP and run.model != "2d" else \
-                "there is but one record"
+            return (
+                "the LTD models have no wheels that could slip"
+                if quantity is SLIP and run.model != "2d"
+                else "there is but one record"
+            )
         if values.shape[1] < least_rows:
             return f"a picture along the train needs more than one {quantity.rows}"
         return ""
+
     runs, not_shown = group.drawable(why_not)
     return {run: quantity.of(run) for run in runs}, not_shown
 
@@ -144,13 +203,17 @@ def _draw(quantity: Quantity, group: Group) -> Figure:
     if len(group.runs) > 1:
         panels[0].set_title(shown.label, loc="left", fontsize=11.5)
     for axes, (run, time_s, values) in zip(panels[1:], differences):
-        limits = _picture(axes, quantity, time_s, values, True, "difference " + quantity.unit[quantity.unit.index("["):])
+        limits = _picture(
+            axes, quantity, time_s, values, True, "difference " + quantity.unit[quantity.unit.index("[") :]
+        )
         axes.set_title(group.difference(run, first), loc="left", fontsize=11.5)
         caption += f" {group.difference(run, first)}: {limits[0].lower()}{limits[1:]}"
     if same:
         caption += f" {' and '.join(same)}: the same as {first.label}."
     panels[-1].set_xlabel("time [s]")
-    panels[-1].set_xlim(min(time_s[0] for time_s, _ in series.values()), max(time_s[-1] for time_s, _ in series.values()))
+    panels[-1].set_xlim(
+        min(time_s[0] for time_s, _ in series.values()), max(time_s[-1] for time_s, _ in series.values())
+    )
     return Figure(quantity.name, quantity.title, caption + not_compared + not_shown, canvas)
 
 
@@ -191,8 +254,16 @@ def _draw_slides(run: Run, slides: List[Slide]) -> Figure:
     canvas = new_canvas(3.9)
     axes = canvas.subplots()
     if creepage.shape[1] > 1:
-        missing = _image(axes, "vehicle", time_s, numpy.maximum(numpy.abs(creepage), LEAST_SLIP), "size of creepage [%]", "min",
-               cmap=style.SEQUENTIAL, norm=LogNorm(LEAST_SLIP, 100.0))
+        missing = _image(
+            axes,
+            "vehicle",
+            time_s,
+            numpy.maximum(numpy.abs(creepage), LEAST_SLIP),
+            "size of creepage [%]",
+            "min",
+            cmap=style.SEQUENTIAL,
+            norm=LogNorm(LEAST_SLIP, 100.0),
+        )
         axes.plot([s.begin_s for s in slides], [s.vehicle for s in slides], ">", color=style.VERMILLION, markersize=4)
         caption = f"{SLIP.caption} The scale is logarithmic.{missing}"
     else:
@@ -203,14 +274,26 @@ def _draw_slides(run: Run, slides: List[Slide]) -> Figure:
         caption = "Creepage of the wheelset with the largest."
     axes.set_xlabel("time [s]")
     locked = sum(slide.locked for slide in slides)
-    caption += (f" Wheel slides of {run.label} ({SLIDE_RULE}) begin at the red marks: {len(slides)} on "
-                f"{len({s.vehicle for s in slides})} vehicle(s), {locked} of them with a locked wheel "
-                f"({100 * LOCKED:g} %).")
+    caption += (
+        f" Wheel slides of {run.label} ({SLIDE_RULE}) begin at the red marks: {len(slides)} on "
+        f"{len({s.vehicle for s in slides})} vehicle(s), {locked} of them with a locked wheel "
+        f"({100 * LOCKED:g} %)."
+    )
     if len(slides) > ROWS_OF_SLIDES:
         caption += f" The table has the first {ROWS_OF_SLIDES}."
-    table = Table(["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
-                  [[str(s.vehicle), f"{s.begin_s:.2f}", f"{s.end_s:.2f}", f"{100 * s.largest_creepage:.1f}".replace("-", "\u2212"),
-                    "yes" if s.locked else "no"] for s in slides[:ROWS_OF_SLIDES]])
+    table = Table(
+        ["vehicle", "from [s]", "to [s]", "largest creepage [%]", "locked"],
+        [
+            [
+                str(s.vehicle),
+                f"{s.begin_s:.2f}",
+                f"{s.end_s:.2f}",
+                f"{100 * s.largest_creepage:.1f}".replace("-", "\u2212"),
+                "yes" if s.locked else "no",
+            ]
+            for s in slides[:ROWS_OF_SLIDES]
+        ],
+    )
     return Figure(SLIP.name, SLIP.title, caption, canvas, table)
 
 
@@ -243,6 +326,7 @@ def draw_wave(group: Group) -> Figure:
             reason = str(left_out).rstrip(".")
             return reason[0].lower() + reason[1:]
         return ""
+
     runs, not_shown = group.drawable(lambda run: lacks(run, "pressures") or why_not(run))
     run = runs[0]
     phases = phases_of[run]
@@ -258,24 +342,44 @@ def draw_wave(group: Group) -> Figure:
         for branch in found.branches:
             vehicles = numpy.arange(branch.first, branch.last + 1)
             axes.plot(branch.time_s, vehicles + 1, color=style.VERMILLION, linewidth=1.8, path_effects=ON_PICTURE)
-            beside.plot(1e3 * (found.arrival_s[vehicles] - branch.time_s), vehicles + 1, ".", color=style.VERMILLION,
-                        markersize=3)
+            beside.plot(
+                1e3 * (found.arrival_s[vehicles] - branch.time_s),
+                vehicles + 1,
+                ".",
+                color=style.VERMILLION,
+                markersize=3,
+            )
         reach = max(1.0, 1.1 * max(abs(v) for v in beside.get_xlim()))
         beside.set_xlim(-reach, reach)
         beside.set_xlabel("seen \u2212 fitted [ms]")
         axes.set_xlabel("time [s]")
-        axes.set_title(f"{phase.name}: fitted {found.speed_mps:.2f} m/s"
-                       + (f", configured {phase.configured_mps:g} m/s" if phase.configured_mps else ""), loc="left",
-                       fontsize=11.5)
+        axes.set_title(
+            f"{phase.name}: fitted {found.speed_mps:.2f} m/s"
+            + (f", configured {phase.configured_mps:g} m/s" if phase.configured_mps else ""),
+            loc="left",
+            fontsize=11.5,
+        )
         starts = ", ".join(f"vehicle {vehicle} at {start_s:.2f} s" for vehicle, start_s in found.sources())
-        error = f"\u00b1 {minus(f'{found.speed_error_mps:.1g}')}" if found.speed_error_mps >= 1e-3 else "\u00b1 less than 0.001"
-        caption += (f"The {phase.name} runs at {found.speed_mps:.2f} m/s {error} m/s (scatter only) by least squares "
-                    f"over the times at which the recorded pressures begin to move ("
-                    + (f"configured: {phase.configured_mps:g} m/s" if phase.configured_mps
-                       else "the configuration names no speed for it")
-                    + "); " + (f"it starts at {starts}. " if starts else "where it starts was not recorded. "))
-    caption += (f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, the "
-                "line through its beginning is not. Lines: the fit. Right: how far each vehicle is from it.")
+        error = (
+            f"\u00b1 {minus(f'{found.speed_error_mps:.1g}')}"
+            if found.speed_error_mps >= 1e-3
+            else "\u00b1 less than 0.001"
+        )
+        caption += (
+            f"The {phase.name} runs at {found.speed_mps:.2f} m/s {error} m/s (scatter only) by least squares "
+            f"over the times at which the recorded pressures begin to move ("
+            + (
+                f"configured: {phase.configured_mps:g} m/s"
+                if phase.configured_mps
+                else "the configuration names no speed for it"
+            )
+            + "); "
+            + (f"it starts at {starts}. " if starts else "where it starts was not recorded. ")
+        )
+    caption += (
+        f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, the "
+        "line through its beginning is not. Lines: the fit. Right: how far each vehicle is from it."
+    )
     if len(group.runs) > 1:
         caption += f" Of {run.label}."
     return Figure("brake_wave", "Brake wave", caption + not_shown, canvas)

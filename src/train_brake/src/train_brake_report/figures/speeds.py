@@ -19,19 +19,37 @@ def draw(group: Group) -> Figure:
         axes.plot(run.recording.state.time_s, run.mean_speed_kmh, label=run.label, **group.line(run))
     if len(runs) == 1 and first.vehicles > 1:
         speeds = KMH_PER_MPS * first.recording.state["speed_mps"]
-        axes.fill_between(first.recording.state.time_s, speeds.min(axis=1), speeds.max(axis=1), color=style.BLUE,
-                          alpha=0.25, linewidth=0, label="slowest to fastest vehicle")
+        axes.fill_between(
+            first.recording.state.time_s,
+            speeds.min(axis=1),
+            speeds.max(axis=1),
+            color=style.BLUE,
+            alpha=0.25,
+            linewidth=0,
+            label="slowest to fastest vehicle",
+        )
     for i, run in enumerate(of_paper):
-        axes.plot(run.end_s, paper.SPEED_KMH[run.model, run.scenario], "o", markersize=9, markerfacecolor="none",
-                  markeredgewidth=1.8, color=group.colour(run), clip_on=False,
-                  label="the paper's Table 1" if i == 0 else None)
+        axes.plot(
+            run.end_s,
+            paper.SPEED_KMH[run.model, run.scenario],
+            "o",
+            markersize=9,
+            markerfacecolor="none",
+            markeredgewidth=1.8,
+            color=group.colour(run),
+            clip_on=False,
+            label="the paper's Table 1" if i == 0 else None,
+        )
     axes.set_ylabel("mean speed [km/h]")
     style.mark_commands(axes, group.commands(), at_bottom=True)
     style.legend_above(axes)
 
     caption = "Speed of the train: the mean of its momentum."
     if first.vehicles > 1:
-        apart = max(numpy.abs(KMH_PER_MPS * run.recording.state["speed_mps"] - run.mean_speed_kmh[:, None]).max() for run in runs)
+        apart = max(
+            numpy.abs(KMH_PER_MPS * run.recording.state["speed_mps"] - run.mean_speed_kmh[:, None]).max()
+            for run in runs
+        )
         caption += f" Single vehicles run up to {apart:.2f} km/h faster or slower."
     for panel, run in zip(below, others):
         a, b = common_rows(first.recording.state.time_s, run.recording.state.time_s)
@@ -39,7 +57,9 @@ def draw(group: Group) -> Figure:
         panel.plot(first.recording.state.time_s[a], difference, color=group.colour(run), linewidth=1.8)
         panel.set_ylabel("[km/h]")
         style.mark_commands(panel, group.commands(), named=False)
-        caption += f" {group.difference(run, first)}: {minus(f'{difference[-1]:+.4f}')} km/h at the last common instant."
+        caption += (
+            f" {group.difference(run, first)}: {minus(f'{difference[-1]:+.4f}')} km/h at the last common instant."
+        )
     canvas.axes[-1].set_xlabel("time [s]")
     if of_paper:
         caption += f" Circles: the paper's values at the last step. {cards.calibrated({run.model for run in of_paper})}"

@@ -40,8 +40,16 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
             axes.semilogx(creepage[1:], adhesion[1:], color=colour, label=f"{speed} km/h")
             if speed == 80:
                 largest.append(f"{surface} {adhesion.max():.3f}")
-        axes.annotate(surface, (0, 1), (8, -8), xycoords="axes fraction", textcoords="offset points", va="top",
-                      fontsize=13, weight="bold")
+        axes.annotate(
+            surface,
+            (0, 1),
+            (8, -8),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            va="top",
+            fontsize=13,
+            weight="bold",
+        )
         axes.margins(x=0)
     style.powers_of_ten(panels[0].xaxis)
     for axes in panels[2:]:
@@ -50,17 +58,26 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
         axes.set_ylabel("adhesion")
     panels[0].set_ylim(bottom=0)
     panels[-1].legend(loc="upper right", ncol=2)  # room above the lowest adhesion
-    return Figure("adhesion", "Adhesion characteristics",
-                  f"Longitudinal over normal force of a wheelset at rest load. Largest at 80 km/h: {', '.join(largest)}. With "
-                  "the paper's friction, 0.4 at any slip, adhesion neither depends on speed nor falls: all speeds are one line, "
-                  "as on low. The others are Polach's typical sets (low: assumed).",
-                  canvas)
+    return Figure(
+        "adhesion",
+        "Adhesion characteristics",
+        f"Longitudinal over normal force of a wheelset at rest load. Largest at 80 km/h: {', '.join(largest)}. With "
+        "the paper's friction, 0.4 at any slip, adhesion neither depends on speed nor falls: all speeds are one line, "
+        "as on low. The others are Polach's typical sets (low: assumed).",
+        canvas,
+    )
 
 
 def mode_table(vehicle_file: str, train_sim: List[str]) -> Figure:
     text = _train_sim(train_sim, "modes", vehicle_file)
     rows = re.findall(r"^ *(\d+) +([\d.]+) +([\d.]+)% +(.*)$", text, flags=re.MULTILINE)
     head, *_, step = [line for line in text.splitlines() if line]
-    return Figure("modes", "Modes of vibration", f"{head}. {step[0].upper()}{step[1:]}.",
-                  table=Table(["mode", "frequency [Hz]", "damping [%]", "largest shares of the kinetic energy"],
-                              [list(row) for row in rows]))
+    return Figure(
+        "modes",
+        "Modes of vibration",
+        f"{head}. {step[0].upper()}{step[1:]}.",
+        table=Table(
+            ["mode", "frequency [Hz]", "damping [%]", "largest shares of the kinetic energy"],
+            [list(row) for row in rows],
+        ),
+    )
