@@ -49,7 +49,24 @@ struct TestRun {
       checkpoint.summary = summary.Memory();
     }
   }
-  std::string Summary() const { return summary.Json(master, 1.0, ""); }
+  /// All that a summary tells, as text: numbers that are not there are equal, too.
+  std::string Summary() const {
+    std::string text = std::to_string(summary.state_digest());
+    const auto add = [&text](double number) { text += " " + ShortestDecimal(number); };
+    for (const double number : summary.Memory()) add(number);
+    for (const double number :
+         {summary.mean_speed_mps(), summary.lead_speed_mps(), summary.tail_speed_mps(),
+          summary.mean_distance_m(), summary.ResidualShare(master), summary.left_route_s()})
+      add(number);
+    for (const ForceExtremes& of : master.in_train_forces().Extremes()) {
+      for (const double number : {of.tension_n, of.tension_time_s, of.compression_n, of.compression_time_s})
+        add(number);
+    }
+    for (const auto& [element, energy_j] : summary.ledger().dissipated_j) add(energy_j);
+    for (const GivenCommand& given : master.schedule().Given())
+      text += " " + std::to_string(given.exchange) + " " + given.command.Text();
+    return text;
+  }
 
   config::LoadedScenario loaded;
   InProcessTransport transport;
@@ -94,8 +111,7 @@ TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
   EXPECT_EQ(whole.zero.stored_energy_j, resumed.zero.stored_energy_j);
   EXPECT_EQ(whole.zero.mean_position_m, whole.first_position_m);  // what observers were shown at time 0
   EXPECT_GT(whole.zero.stored_energy_j, 0.0);
-  const auto after_times = [](const std::string& json) { return json.substr(json.find("\"complete\"")); };
-  EXPECT_EQ(after_times(whole.Summary()), after_times(resumed.Summary()));
+  EXPECT_EQ(whole.Summary(), resumed.Summary());
 }
 
 INSTANTIATE_TEST_SUITE_P(

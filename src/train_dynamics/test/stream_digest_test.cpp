@@ -35,6 +35,13 @@ TEST(StreamDigest, DoesNotDependOnHowTheStreamIsCut) {
   }
 }
 
+// Test vectors of the xxHash specification, seed 0.
+TEST(StreamDigest, IsXxh64) {
+  EXPECT_EQ(DigestOf(""), 0xef46db3751d8e999u);
+  EXPECT_EQ(DigestOf("a"), 0xd24ec4f1a98c6e5bu);
+  EXPECT_EQ(DigestOf("abc"), 0x44bc2cf5ad770999u);
+}
+
 TEST(StreamDigest, TellsEveryBitLengthAndOrder) {
   std::set<std::uint64_t> digests;
   std::size_t texts = 0;

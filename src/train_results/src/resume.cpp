@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "strict_config/writer.h"
-#include "train_dynamics/numeric/digest.h"
+#include "train_dynamics/numeric/stream_digest.h"
 #include "train_results/plain_file.h"
 
 namespace train_results {
@@ -106,8 +106,10 @@ train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
 std::string IdentityOf(const ScenarioParams& scenario) {
   ScenarioParams named = scenario;
   if (!scenario.pressure_table.empty()) {
-    named.pressure_table = fmt::format(
-        "digest {:016x}", train_dynamics::TextDigest(ReadPlainFile(scenario.pressure_table, kLargestFile)));
+    train_dynamics::StreamDigest digest;
+    const std::string table = ReadPlainFile(scenario.pressure_table, kLargestFile);
+    digest.Add(table.data(), table.size());
+    named.pressure_table = fmt::format("XXH64 {:016x}", digest.value());
   }
   return VersionLine() + "\n" + strict_config::Write(named);
 }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "train_results/summary_json.h"
+
 namespace train_run {
 namespace {
 
@@ -90,7 +92,8 @@ void TrainRun::LeaveCheckpoint(const RunHooks& hooks, std::chrono::duration<doub
 }
 
 std::string TrainRun::Finish(double wall_s, const std::string& fault) {
-  const std::string json = summary_.Json(master_, wall_s, fault.empty() ? fault_ : fault);
+  const std::string json =
+      train_results::SummaryJson(summary_, master_, wall_s, fault.empty() ? fault_ : fault);
   if (output_ == nullptr) return json;
   try {
     output_->Finish(master_, summary_, json);

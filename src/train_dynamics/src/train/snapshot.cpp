@@ -4,16 +4,18 @@
 #include <cstring>
 
 #include "train_dynamics/numeric/digest.h"
+#include "train_dynamics/numeric/stream_digest.h"
 
 namespace train_dynamics {
 namespace {
 
 // Each rises when the fields or their meaning change; in all versions of a train's checkpoint the scenario comes first.
-constexpr std::uint64_t kBlockFormat = 2;
-constexpr std::uint64_t kTrainFormat = 5;
+constexpr std::uint64_t kBlockFormat = 3;
+constexpr std::uint64_t kTrainFormat = 6;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
-std::uint64_t Checksum(const std::uint8_t* bytes, std::size_t size) {
+/// That of checkpoints before format 6.
+std::uint64_t OldChecksum(const std::uint8_t* bytes, std::size_t size) {
   Digest digest;
   for (std::size_t at = 0; at < size; at += kWord) {
     std::uint64_t word = 0;
@@ -31,8 +33,11 @@ ByteWriter Begin(const char* mark, std::uint64_t format) {
   return writer;
 }
 
+/// XXH64 of the bytes before it, as xxhsum prints it: the most significant byte first.
 Bytes Finish(ByteWriter& writer) {
-  writer.Add(Checksum(writer.bytes().data(), writer.bytes().size()));
+  XXH64_canonical_t checksum;
+  XXH64_canonicalFromHash(&checksum, XXH64(writer.bytes().data(), writer.bytes().size(), 0));
+  writer.AddRaw(checksum.digest, sizeof checksum.digest);
   return writer.bytes();
 }
 
@@ -41,7 +46,15 @@ constexpr std::size_t kHead = 2 * kWord;
 bool IsWhole(const Bytes& bytes) {
   if (bytes.size() < kHead + kWord) return false;
   const std::size_t end = bytes.size() - kWord;
-  return ByteReader(bytes.data() + end, kWord).Word() == Checksum(bytes.data(), end);
+  XXH64_canonical_t checksum;
+  std::memcpy(checksum.digest, bytes.data() + end, kWord);
+  return XXH64_hashFromCanonical(&checksum) == XXH64(bytes.data(), end, 0);
+}
+
+bool IsWholeOldOne(const Bytes& bytes) {
+  if (bytes.size() < kHead + kWord) return false;
+  const std::size_t end = bytes.size() - kWord;
+  return ByteReader(bytes.data() + end, kWord).Word() == OldChecksum(bytes.data(), end);
 }
 
 /// What stands between mark and checksum.
@@ -56,7 +69,7 @@ std::uint64_t FormatOf(const Bytes& bytes, const char* mark, const std::string& 
 
 /// Who wrote a checkpoint of a train, of whatever format, from the first line of its scenario.
 std::string WriterOf(const Bytes& bytes) {
-  if (!IsWhole(bytes)) return "an unknown program";
+  if (!IsWhole(bytes) && !IsWholeOldOne(bytes)) return "an unknown program";
   const std::string scenario = ContentsOf(bytes).Text();
   const std::string line = scenario.substr(0, scenario.find('\n'));
   return line.rfind("# ", 0) == 0 ? line.substr(2) : "an unknown program";

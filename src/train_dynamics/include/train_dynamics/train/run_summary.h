@@ -27,10 +27,6 @@ class RunSummary {
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
 
-  /// The summary as JSON text; keys carry their units, what does not exist is null.
-  /// @param fault  why the run ended early; empty: it did not, or was interrupted
-  std::string Json(const TrainMaster& master, double wall_s, const std::string& fault) const;
-
   /// The summary shall tell how far this twin has come apart.
   void SetTwin(TwinRun twin) { twin_ = std::move(twin); }
 
@@ -39,6 +35,25 @@ class RunSummary {
   double ResidualShare(const TrainMaster& master) const;
   double mean_speed_mps() const { return mean_speed_mps_; }
   double mean_distance_m() const { return mean_distance_m_; }
+  double lead_speed_mps() const { return lead_speed_mps_; }
+  double tail_speed_mps() const { return tail_speed_mps_; }
+  int vehicles() const { return vehicles_; }
+  double left_route_s() const { return left_route_s_; }   ///< NaN: it did not
+  const EnergyLedger& ledger() const { return ledger_; }  ///< the last one
+  std::uint64_t state_digest() const { return state_digest_; }
+  const ScenarioParams& scenario() const { return scenario_; }
+  const std::optional<TwinRun>& twin() const { return twin_; }
+
+  /// A time at which the train came to a stand.
+  struct Stop {
+    double time_s, distance_m;
+    double until_s;  ///< when it was under way again; NaN: it stands still
+  };
+
+  const std::vector<Stop>& stops() const { return stops_; }
+  bool Stands() const { return !stops_.empty() && !(stops_.back().until_s == stops_.back().until_s); }
+  double BehindFurthest() const;  ///< [m] by how far the train has come back from its furthest place
+  bool RolledBack() const;
 
   /// The slides of the run so far, and the work on its track.
   const SlideResults& slides() const { return slides_; }
@@ -59,21 +74,7 @@ class RunSummary {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   void JudgeMotion(const TrainRecord& record);
-  double Forward() const;         ///< 1 or -1: the direction of the start
-  double BehindFurthest() const;  ///< [m] by how far the train has come back from its furthest place
-  bool RolledBack() const;
-  std::string Stops() const;                          ///< as JSON objects
-  std::string Slides() const;                         ///< as a JSON object
-  std::string Twin(const TrainMaster& master) const;  ///< as a JSON object, or null
-  /// Those that were given to the running train, as JSON objects.
-  std::string Commands(const TrainMaster& master) const;
-
-  /// A time at which the train came to a stand.
-  struct Stop {
-    double time_s, distance_m;
-    double until_s;  ///< when it was under way again; NaN: it stands still
-  };
-  bool Stands() const { return !stops_.empty() && !(stops_.back().until_s == stops_.back().until_s); }
+  double Forward() const;  ///< 1 or -1: the direction of the start
 
   const ScenarioParams& scenario_;
   SlideResults slides_;
