@@ -13,17 +13,18 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from PIL import ImageGrab
+from PIL import ImageChops, ImageGrab
 from sensor_msgs.msg import Joy
 from std_srvs.srv import Trigger
 from train_brake_msgs.msg import DriverView, GivenCommand
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from rviz import start_display
+from rviz import Seen, mask, start_display
 
 WORKSPACE = pathlib.Path(__file__).resolve().parents[3]
 SCENARIO = WORKSPACE / "config" / "scenarios" / "drive_and_stop.yaml"
 TRAINS = {"/train": ("plain", 30), "/north/train": ("north", 15)}  # namespace: (folder, speed to be held [km/h])
+EMERGENCY_BUTTON = (213, 94, 0)  # its colour, once a train runs
 LATE = 120.0
 
 
@@ -41,14 +42,16 @@ class TwoCabs(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        display, self.display = start_display()
-        self.addCleanup(display.wait)
-        self.addCleanup(display.terminate)
+        self.displays = {}
+        for namespace in TRAINS:
+            display, self.displays[namespace] = start_display()
+            self.addCleanup(display.wait)
+            self.addCleanup(display.terminate)
         self.master = rosgraph.Master("/two_cabs_test")
 
-    def start(self, *words, namespace):
+    def start(self, *words, namespace, display=""):
         environment = dict(
-            os.environ, DISPLAY=self.display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", HOME=str(self.folder)
+            os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", HOME=str(self.folder)
         )
         environment.pop("ROS_NAMESPACE", None)
         if namespace:
@@ -70,6 +73,22 @@ class TwoCabs(unittest.TestCase):
     def nodes(self, which, topic):
         """Who publishes (0) or subscribes (1) to a topic, or serves it (2)."""
         return {node for name, nodes in self.master.getSystemState()[which] for node in nodes if name == topic}
+
+    def look(self, namespace):
+        picture = ImageGrab.grab(xdisplay=self.displays[namespace]).convert("RGB")
+        if os.environ.get("TRAIN_BRAKE_SCREENSHOTS"):
+            folder = pathlib.Path(os.environ["TRAIN_BRAKE_SCREENSHOTS"])
+            picture.save(folder / f"two_cabs_{TRAINS[namespace][0]}.png")
+        return picture
+
+    def shows_a_train(self, namespace):
+        return Seen(self.look(namespace), EMERGENCY_BUTTON).width > 100
+
+    def handle(self, namespace):
+        """The line of the cab that tells where the brake handle stands: under the button EMERGENCY."""
+        picture = self.look(namespace)
+        button = Seen(picture, EMERGENCY_BUTTON)
+        return picture.crop((button.right - 120, button.bottom + 4, button.right, button.bottom + 24))
 
     def test_nothing_of_one_train_reaches_the_other(self):
         trains, given = {}, {namespace: [] for namespace in TRAINS}
@@ -97,6 +116,7 @@ class TwoCabs(unittest.TestCase):
                 "start_paused:=true",
                 "set:=commands=[] until=null duration_s=100 exchange_interval_s=0.005",
                 namespace=namespace.rpartition("/")[0],
+                display=self.displays[namespace],
             )
             self.assertTrue(wait_until(lambda: self.nodes(2, f"{namespace}/master/resume")), namespace)
             rospy.Subscriber(f"{namespace}/driver/given", GivenCommand, given[namespace].append)
@@ -110,6 +130,16 @@ class TwoCabs(unittest.TestCase):
         self.assertEqual({"/train/master"}, self.nodes(0, "/clock"))
         self.assertEqual({"/north/train/master"}, self.nodes(0, "/north/train/clock"))
 
+        self.assertTrue(wait_until(lambda: all(self.shows_a_train(namespace) for namespace in TRAINS)))
+        same = lambda one, other: ImageChops.difference(one, other).getbbox() is None
+        ink = lambda picture: mask(picture, (0, 0, 0), tolerance=90).histogram()[255]
+        self.assertTrue(  # both released: a word, no longer a dash
+            wait_until(
+                lambda: ink(self.handle("/train")) > 50 and same(self.handle("/train"), self.handle("/north/train"))
+            )
+        )
+        released = self.handle("/train")
+
         # A joystick of one train, while both stand.
         joystick = rospy.Publisher("/north/train/joy", Joy, queue_size=1, latch=True)
         joystick.publish(Joy(axes=[0.0, 0.0], buttons=[1, 0, 0]))
@@ -119,9 +149,8 @@ class TwoCabs(unittest.TestCase):
         views = {}
         for namespace in TRAINS:
             views[namespace] = rospy.wait_for_message(f"{namespace}/live/driver_view", DriverView, LATE)
-        picture = ImageGrab.grab(xdisplay=self.display).convert("RGB")
-        if os.environ.get("TRAIN_BRAKE_SCREENSHOTS"):
-            picture.save(pathlib.Path(os.environ["TRAIN_BRAKE_SCREENSHOTS"]) / "two_cabs.png")
+        self.assertTrue(wait_until(lambda: not same(self.handle("/north/train"), released)))
+        self.assertTrue(same(self.handle("/train"), released))
         self.assertFalse([g for g in given["/train"] if g.command.kind == "apply"])
         self.assertEqual(0, views["/train"].reduction_kpa)
         self.assertEqual(50, views["/north/train"].reduction_kpa)
