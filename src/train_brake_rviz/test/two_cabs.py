@@ -24,7 +24,7 @@ from rviz import Seen, mask, start_display
 WORKSPACE = pathlib.Path(__file__).resolve().parents[3]
 SCENARIO = WORKSPACE / "config" / "scenarios" / "drive_and_stop.yaml"
 TRAINS = {"/train": ("plain", 30), "/north/train": ("north", 15)}  # namespace: (folder, speed to be held [km/h])
-EMERGENCY_BUTTON = (213, 94, 0)  # its colour, once a train runs
+EMERGENCY_BUTTON = ((250, 165, 100), (220, 115, 40))  # colours between which its own lie, once a train runs
 LATE = 120.0
 
 
@@ -81,14 +81,19 @@ class TwoCabs(unittest.TestCase):
             picture.save(folder / f"two_cabs_{TRAINS[namespace][0]}.png")
         return picture
 
+    def cab(self, namespace):
+        """The picture of the cab, and its button EMERGENCY."""
+        picture = self.look(namespace)
+        picture = picture.crop((0, 0, picture.width // 4, picture.height))
+        return picture, Seen(picture, *EMERGENCY_BUTTON)
+
     def shows_a_train(self, namespace):
-        return Seen(self.look(namespace), EMERGENCY_BUTTON).width > 100
+        return self.cab(namespace)[1].width > 100
 
     def handle(self, namespace):
         """The line of the cab that tells where the brake handle stands: under the button EMERGENCY."""
-        picture = self.look(namespace)
-        button = Seen(picture, EMERGENCY_BUTTON)
-        return picture.crop((button.right - 120, button.bottom + 4, button.right, button.bottom + 24))
+        picture, button = self.cab(namespace)
+        return picture.crop((button.right - 120, button.bottom + 4, button.right, button.bottom + 26))
 
     def test_nothing_of_one_train_reaches_the_other(self):
         trains, given = {}, {namespace: [] for namespace in TRAINS}
