@@ -358,7 +358,7 @@ class OddRank : public testing::Test {
     return true;
   }
 
-  /// One exchange, in which the odd rank does something to its letter.
+  /// One exchange, in which the odd rank does something to its reply.
   template <class Action>
   ltd_master::CallOutcome Exchange(Action action) {
     train_dynamics::ExchangeRequest request;
@@ -369,12 +369,12 @@ class OddRank : public testing::Test {
     messages_->Pack(request);
     train_brake_msgs::ExchangeHead& head = memory_->head();
     std::thread rank([&] {
-      for (std::uint32_t heard = head.requests.rings(); memory_->request(slot_).call() == 0;) {
-        head.requests.Wait(heard, 0.1);
+      for (std::uint32_t seen = head.requests.count(); memory_->request(slot_).call() == 0;) {
+        head.requests.Wait(seen, 0.1);
       }
       action(memory_->reply(slot_), memory_->request(slot_).call(), memory_->layout().reply_room);
       head.unreplied.fetch_sub(1);
-      head.replies.Ring();
+      head.replies.Notify();
     });
     ltd_master::LateWatch watch(ranks_, "test", kSoon, interrupted_);
     const ltd_master::CallOutcome outcome = caller_->Call(messages_->step, watch);
@@ -396,20 +396,22 @@ class OddRank : public testing::Test {
 };
 
 TEST_F(OddRank, WhoseReplyDoesNotFitIsAskedByTcp) {
-  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
-    train_brake_msgs::StepResponse reply;
-    reply.message.assign(room, 'x');
-    EXPECT_FALSE(letter.Write(call, reply, room));
-  });
+  const auto outcome =
+      Exchange([](train_brake_msgs::MessageBuffer& buffer, std::uint64_t call, std::uint32_t room) {
+        train_brake_msgs::StepResponse reply;
+        reply.message.assign(room, 'x');
+        EXPECT_FALSE(buffer.Write(call, reply, room));
+      });
   EXPECT_TRUE(outcome.lost.empty());
   EXPECT_EQ(messages_->step[0].response.message, "by TCP");
   for (const int rank : {1, 2}) EXPECT_TRUE(messages_->step[rank].response.ok);
 }
 
 TEST_F(OddRank, WhoseReplyCannotBeReadIsLost) {
-  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
-    letter.Write(call, std::string("no reply"), room);
-  });
+  const auto outcome =
+      Exchange([](train_brake_msgs::MessageBuffer& buffer, std::uint64_t call, std::uint32_t room) {
+        buffer.Write(call, std::string("no reply"), room);
+      });
   ASSERT_EQ(outcome.lost.size(), 1u);
   EXPECT_EQ(outcome.lost[0].rank, 0);
   for (const int rank : {1, 2}) EXPECT_TRUE(messages_->step[rank].response.ok);
@@ -417,13 +419,14 @@ TEST_F(OddRank, WhoseReplyCannotBeReadIsLost) {
 }
 
 TEST_F(OddRank, WhoseReplyIsToAnotherCallIsWaitedFor) {
-  const auto outcome = Exchange([](train_brake_msgs::Letter& letter, std::uint64_t call, std::uint32_t room) {
-    train_brake_msgs::StepResponse reply;
-    letter.Write(call + 1, reply, room);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    reply.message = "at last";
-    letter.Write(call, reply, room);
-  });
+  const auto outcome =
+      Exchange([](train_brake_msgs::MessageBuffer& buffer, std::uint64_t call, std::uint32_t room) {
+        train_brake_msgs::StepResponse reply;
+        buffer.Write(call + 1, reply, room);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        reply.message = "at last";
+        buffer.Write(call, reply, room);
+      });
   EXPECT_TRUE(outcome.lost.empty());
   EXPECT_EQ(messages_->step[0].response.message, "at last");
 }

@@ -121,7 +121,7 @@ void LockstepDriver::Call(std::uint64_t exchange) {
   link_->Send(call_.request);
   Patience patience(options_.deadline_s, options_.interrupted);
   while (!link_->Receive(call_.response)) {
-    link_->Wait(Patience::kGlance);
+    link_->Wait(Patience::kCheckPeriod);
     const bool in_time = patience.Look([&](double waited_s) {
       ROS_WARN("exchange %lu: waiting for %.0f s already for the driver %s", exchange, waited_s,
                options_.node.c_str());

@@ -37,23 +37,23 @@ class Process {
   void Write(std::uint64_t call, const StepResponse& reply) {
     memory_.reply(slot).Write(call, reply, memory_.layout().reply_room);
   }
-  void Ring() {
+  void Notify() {
     if (memory_.head().unreplied.fetch_sub(1) > 1) return;
     memory_.head().last_slot = slot;
-    memory_.head().replies.Ring();
+    memory_.head().replies.Notify();
   }
   void Reply(const StepResponse& reply) {
     Write(memory_.request(slot).call(), reply);
-    Ring();
+    Notify();
   }
   std::uint64_t call() { return memory_.request(slot).call(); }
   /// What only a stranger writes: the size of the message, and the message.
   void WriteRaw(std::uint32_t size, const std::vector<std::uint8_t>& bytes) {
     Write(call(), StepResponse());
-    auto* letter = reinterpret_cast<std::uint8_t*>(&memory_.reply(slot));
-    std::memcpy(letter + sizeof(std::uint64_t), &size, sizeof size);
-    std::copy(bytes.begin(), bytes.end(), letter + train_brake_msgs::Letter::Size(0));
-    Ring();
+    auto* buffer = reinterpret_cast<std::uint8_t*>(&memory_.reply(slot));
+    std::memcpy(buffer + sizeof(std::uint64_t), &size, sizeof size);
+    std::copy(bytes.begin(), bytes.end(), buffer + train_brake_msgs::MessageBuffer::Size(0));
+    Notify();
   }
   std::uint32_t reply_room() const { return memory_.layout().reply_room; }
 
@@ -153,9 +153,9 @@ TEST_F(SharedSlotsTest, TheSlotOfALostRankIsNobodysAnyMore) {
   StepResponse late;
   late.ok = true;
   late.exchange = 99;
-  lost.Reply(late);  // rings, perhaps too early
+  lost.Reply(late);  // wakes the master, perhaps too early
   lost.Write(replacement.call(), late);
-  lost.Ring();
+  lost.Notify();
   EXPECT_EQ(Read(0), Reply::kNone);
   other.Reply(Answer(other.Request()));
   std::thread last([&] { replacement.Reply(Answer(replacement.Request())); });
@@ -170,7 +170,7 @@ TEST_F(SharedSlotsTest, RepliesToOtherCallsAreNone) {
   Send();
   for (const std::uint64_t call : {process.call() - 1, process.call() + 1, ~std::uint64_t{0}}) {
     process.Write(call, Answer(process.Request()));
-    process.Ring();
+    process.Notify();
     slots_.Wait(kBriefly);
     EXPECT_EQ(Read(0), Reply::kNone);
   }

@@ -7,7 +7,7 @@
 namespace wagon_node {
 
 using train_brake_msgs::ExchangeHead;
-using train_brake_msgs::HearsInTurns;
+using train_brake_msgs::YieldUntil;
 
 SharedSlot::SharedSlot(const train_brake_msgs::ConfigureRequest& offer)
     : memory_(offer.memory_pid, offer.memory_descriptor, offer.run_id), slot_(offer.memory_slot) {
@@ -17,21 +17,21 @@ SharedSlot::SharedSlot(const train_brake_msgs::ConfigureRequest& offer)
 
 bool SharedSlot::Wait(double timeout_s) {
   ExchangeHead& head = memory_.head();
-  const std::uint32_t heard = head.requests.rings();
+  const std::uint32_t seen = head.requests.count();
   if (memory_.request(slot_).call() != served_) return true;
   // There may be a core for each thread of the ranks; but one of them is the master's, who is the next to work.
   const bool has_core =
       head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
-  const bool hears =
-      has_core ? vigil_.Hears(head.requests, heard) : HearsInTurns(head.requests, heard, head.turns);
-  if (!hears) head.requests.Wait(heard, timeout_s);
+  const bool is_notified =
+      has_core ? spin_.Spin(head.requests, seen) : YieldUntil(head.requests, seen, head.yields);
+  if (!is_notified) head.requests.Wait(seen, timeout_s);
   return memory_.request(slot_).call() != served_;
 }
 
 void SharedSlot::Read(train_brake_msgs::StepRequest& request) {
-  train_brake_msgs::Letter& letter = memory_.request(slot_);
-  served_ = letter.call();
-  if (!letter.Read(request, memory_.layout().request_room))
+  train_brake_msgs::MessageBuffer& buffer = memory_.request(slot_);
+  served_ = buffer.call();
+  if (!buffer.Read(request, memory_.layout().request_room))
     throw std::runtime_error("it does not fit its slot");
 }
 
@@ -41,7 +41,7 @@ void SharedSlot::Reply(const train_brake_msgs::StepResponse& response) {
   const bool is_last = head.unreplied.fetch_sub(1) <= 1;
   if (!is_last) return;
   head.last_slot.store(slot_);
-  head.replies.Ring();
+  head.replies.Notify();
 }
 
 }  // namespace wagon_node

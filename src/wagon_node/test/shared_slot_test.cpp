@@ -121,7 +121,7 @@ class SharedSlotTest : public testing::Test {
     request.exchange = call;
     master_.head().unreplied = 1;
     master_.request(1).Write(call, request, Layout().request_room);
-    master_.head().requests.Ring();
+    master_.head().requests.Notify();
   }
 
   const File file_{Layout()};
@@ -138,10 +138,10 @@ TEST_F(SharedSlotTest, ServesEachCallOnce) {
     ASSERT_TRUE(slot_.Wait(kLong));
     slot_.Read(request_);
     EXPECT_EQ(request_.exchange, call);
-    const std::uint32_t heard = master_.head().replies.rings();
+    const std::uint32_t seen = master_.head().replies.count();
     response_.exchange = 100 + call;
     slot_.Reply(response_);
-    EXPECT_EQ(master_.head().replies.rings(), heard + 1);
+    EXPECT_EQ(master_.head().replies.count(), seen + 1);
     EXPECT_EQ(master_.head().last_slot, 1u);
     EXPECT_EQ(master_.reply(1).call(), call);
     StepResponse read;
@@ -155,31 +155,31 @@ TEST_F(SharedSlotTest, SharesItsCoreInTurnsButSleepsInTheEnd) {
   constexpr std::uint32_t kMany = std::numeric_limits<std::uint32_t>::max();
   master_.head().threads = kMany;  // more than there are cores
   std::uint64_t call = 0;
-  for (const std::uint32_t turns : {0u, 1u, 50u, kMany}) {  // the last would take hours
-    master_.head().turns = turns;
-    EXPECT_FALSE(slot_.Wait(kBriefly)) << turns;
+  for (const std::uint32_t yields : {0u, 1u, 50u, kMany}) {  // the last would take hours
+    master_.head().yields = yields;
+    EXPECT_FALSE(slot_.Wait(kBriefly)) << yields;
     Call(++call);
-    ASSERT_TRUE(slot_.Wait(kLong)) << turns;
+    ASSERT_TRUE(slot_.Wait(kLong)) << yields;
     slot_.Read(request_);
     std::thread master([this, next = ++call] {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       Call(next);
     });
-    EXPECT_TRUE(slot_.Wait(kLong)) << turns;
+    EXPECT_TRUE(slot_.Wait(kLong)) << yields;
     slot_.Read(request_);
     EXPECT_EQ(request_.exchange, call);
     master.join();
   }
 }
 
-TEST_F(SharedSlotTest, OnlyTheLastOneRings) {
+TEST_F(SharedSlotTest, OnlyTheLastOneWakesTheMaster) {
   Call(1);
   master_.head().unreplied = 2;
-  const std::uint32_t heard = master_.head().replies.rings();
+  const std::uint32_t seen = master_.head().replies.count();
   ASSERT_TRUE(slot_.Wait(kLong));
   slot_.Read(request_);
   slot_.Reply(response_);
-  EXPECT_EQ(master_.head().replies.rings(), heard);
+  EXPECT_EQ(master_.head().replies.count(), seen);
   EXPECT_EQ(master_.head().unreplied, 1);
 }
 

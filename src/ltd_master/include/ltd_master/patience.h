@@ -17,8 +17,8 @@ class WaitInterrupted : public std::runtime_error {
 /// A wait for other nodes: its stages of 1, 3 and 10 s, each worth a warning, its deadline and its interruption.
 class Patience {
  public:
-  /// For how long to wait before looking at the watch [s].
-  static constexpr double kGlance = 0.1;
+  /// For how long to wait before the time is checked [s].
+  static constexpr double kCheckPeriod = 0.1;
   static constexpr std::array<double, 3> kStages = {1.0, 3.0, 10.0};  ///< [s]
 
   /// @param deadline_s   [wall time] 0: none

@@ -63,10 +63,10 @@ class CallOfAll {
   void CallSlots(SharedSlots& slots) {
     slots.Send(calls_);
     while (!in_slots_.empty()) {
-      slots.Wait(LateWatch::kGlance);
+      slots.Wait(LateWatch::kCheckPeriod);
       const auto is_over = [&](int rank) { return pending_[rank] ? ReadSlot(slots, rank) : true; };
       in_slots_.erase(std::remove_if(in_slots_.begin(), in_slots_.end(), is_over), in_slots_.end());
-      Glance();
+      CheckOthers();
     }
     const int last_rank = slots.last_rank();
     if (last_rank >= 0) outcome_.last_rank = last_rank;  // else a process that was given up came in last
@@ -88,10 +88,10 @@ class CallOfAll {
     on_links_.pop_back();
     ReadLink(rank);
     while (pending_[rank]) {
-      links_[rank]->Wait(LateWatch::kGlance);
+      links_[rank]->Wait(LateWatch::kCheckPeriod);
       ReadLink(rank);
       outcome_.last_rank = rank;
-      Glance();
+      CheckOthers();
     }
   }
 
@@ -101,10 +101,10 @@ class CallOfAll {
   }
 
   /// Ten times a second of waiting: looks at all links, and at the watch.
-  void Glance() {
+  void CheckOthers() {
     const Clock::time_point now = Clock::now();
-    if (now < next_glance_) return;
-    next_glance_ = now + kGlance;
+    if (now < next_check_) return;
+    next_check_ = now + kCheckPeriod;
     for (const int rank : on_links_) ReadLink(rank);
     for (const int rank : in_slots_) Attempt(rank, [&] { links_[rank]->ExpectSilence(); });
     if (watch_.Look(pending_)) return;
@@ -129,15 +129,15 @@ class CallOfAll {
     outcome_.lost.push_back({rank, why});
   }
 
-  static constexpr auto kGlance =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(LateWatch::kGlance));
+  static constexpr auto kCheckPeriod =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(LateWatch::kCheckPeriod));
 
   Links& links_;
   std::vector<Service>& calls_;
   LateWatch& watch_;
   std::vector<bool> pending_;             ///< [rank] whether it has yet to reply
   std::vector<int> in_slots_, on_links_;  ///< ranks whose replies are expected there
-  Clock::time_point next_glance_ = Clock::now() + kGlance;
+  Clock::time_point next_check_ = Clock::now() + kCheckPeriod;
   CallOutcome outcome_;
 };
 
@@ -206,7 +206,7 @@ class AsynchronousCaller : public RankCaller {
       pending[rank] = true;
       link.Send(call.request);
       while (!link.Receive(call.response)) {
-        if (!link.Wait(LateWatch::kGlance) && !watch.Look(pending)) throw LinkError(watch.NoReply());
+        if (!link.Wait(LateWatch::kCheckPeriod) && !watch.Look(pending)) throw LinkError(watch.NoReply());
       }
     } catch (const WaitInterrupted&) {
       Disconnect(rank);

@@ -16,9 +16,9 @@ namespace {
 
 using train_brake_msgs::ExchangeLayout;
 
-constexpr std::uint32_t kSpareSlots = 64;     // for replacements
-constexpr std::uint32_t kTextRoom = 1024;     // [bytes] for a fault or a refusal
-constexpr std::uint32_t kTurns[2] = {1, 50};  // of the two ways of FasterWay
+constexpr std::uint32_t kSpareSlots = 64;      // for replacements
+constexpr std::uint32_t kTextRoom = 1024;      // [bytes] for a fault or a refusal
+constexpr std::uint32_t kYields[2] = {1, 50};  // of the two ways of FasterWay
 
 std::uint32_t RequestRoom(int vehicles) {
   train_brake_msgs::StepRequest request;
@@ -110,8 +110,8 @@ void SharedSlots::Send(const std::vector<train_brake_msgs::Step>& calls) {
   if (call_ > 0 && threads > cores_) faster_.Took(std::chrono::duration<double>(end_ - begin_).count());
   begin_ = end_ = std::chrono::steady_clock::now();
   ++call_;
-  heard_ = head.replies.rings();
-  head.turns.store(kTurns[faster_.way()]);
+  seen_ = head.replies.count();
+  head.yields.store(kYields[faster_.way()]);
   head.threads.store(threads);
   head.master_core.store(static_cast<std::uint32_t>(sched_getcpu()));
   head.unreplied.store(used);
@@ -119,23 +119,23 @@ void SharedSlots::Send(const std::vector<train_brake_msgs::Step>& calls) {
     if (!ranks_[rank].is_used) continue;
     memory_->request(ranks_[rank].slot).Write(call_, calls[rank].request, memory_->layout().request_room);
   }
-  head.requests.Ring();
+  head.requests.Notify();
 }
 
 void SharedSlots::Wait(double timeout_s) {
   train_brake_msgs::ExchangeHead& head = memory_->head();
   const bool has_core = head.threads < cores_;  // if not, a rank needs this one
-  const bool hears = has_core ? vigil_.Hears(head.replies, heard_)
-                              : train_brake_msgs::HearsInTurns(head.replies, heard_, head.turns);
-  if (!hears) head.replies.Wait(heard_, timeout_s);
+  const bool is_notified = has_core ? spin_.Spin(head.replies, seen_)
+                                    : train_brake_msgs::YieldUntil(head.replies, seen_, head.yields);
+  if (!is_notified) head.replies.Wait(seen_, timeout_s);
   end_ = std::chrono::steady_clock::now();
-  heard_ = head.replies.rings();
+  seen_ = head.replies.count();
 }
 
 SharedSlots::Reply SharedSlots::Read(int rank, train_brake_msgs::StepResponse& response) const {
-  train_brake_msgs::Letter& letter = memory_->reply(ranks_[rank].slot);
-  if (letter.call() != call_) return Reply::kNone;
-  return letter.Read(response, memory_->layout().reply_room) ? Reply::kRead : Reply::kTooLarge;
+  train_brake_msgs::MessageBuffer& buffer = memory_->reply(ranks_[rank].slot);
+  if (buffer.call() != call_) return Reply::kNone;
+  return buffer.Read(response, memory_->layout().reply_room) ? Reply::kRead : Reply::kTooLarge;
 }
 
 int SharedSlots::last_rank() const {

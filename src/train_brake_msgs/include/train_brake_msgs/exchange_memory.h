@@ -27,13 +27,13 @@
 ///
 ///   memory    a head, then slots. A slot belongs to one process for good, and holds its request and its
 ///             reply, serialised as they are on the wire.
-///   call c    master  writes the requests, numbers them c, and rings once for all ranks
+///   call c    master  writes the requests, numbers them c, and wakes all ranks at once
 ///             rank    finds its request numbered c, moves its vehicles, writes its reply, numbers it c, and
-///                     takes one off `unreplied`; whoever takes the last one off rings for the master
+///                     takes one off `unreplied`; whoever takes the last one off wakes the master
 ///             master  reads the replies that are numbered c
 ///
 /// So a call costs each rank one system call, in which it sleeps, and the master two. A process that has been
-/// given up and wakes up late can ring too early, but nobody reads its slot any more.
+/// given up and wakes up late can wake the master too early, but nobody reads its slot any more.
 ///
 /// The memory is a file without a name (memfd_create(2)): it cannot outlive the processes that use it. They
 /// open it as /proc/PID/fd/DESCRIPTOR of the master, which only who may look into the master anyway can. It is
@@ -42,45 +42,45 @@ namespace train_brake_msgs {
 
 constexpr std::size_t kCacheLine = 64;
 
-/// A bell between processes. Nobody misses a ring who has counted the rings before he looked for work.
-class alignas(kCacheLine) Bell {
+/// An event count between processes: who reads it before looking for work misses no event, however late the wait begins.
+class alignas(kCacheLine) EventCount {
  public:
-  std::uint32_t rings() const { return rings_.load(); }
+  std::uint32_t count() const { return count_.load(); }
 
-  /// Wakes all who wait.
-  void Ring() {
-    rings_.fetch_add(1);
-    if (sleepers_.load() > 0) syscall(SYS_futex, &rings_, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+  /// Counts one more event and wakes all who wait.
+  void Notify() {
+    count_.fetch_add(1);
+    if (waiters_.load() > 0) syscall(SYS_futex, &count_, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
   }
 
-  /// Sleeps until it has rung since its rings were counted; a signal may end the sleep, too.
-  /// @param heard  that count
-  void Wait(std::uint32_t heard, double timeout_s) {
+  /// Sleeps until there has been an event since the count was read; a signal may end the sleep, too.
+  /// @param seen  the count as it was read
+  void Wait(std::uint32_t seen, double timeout_s) {
     const auto seconds = static_cast<std::time_t>(timeout_s);
     const timespec timeout{seconds, static_cast<long>(1e9 * (timeout_s - static_cast<double>(seconds)))};
-    sleepers_.fetch_add(1);
-    if (rings_.load() == heard) syscall(SYS_futex, &rings_, FUTEX_WAIT, heard, &timeout, nullptr, 0);
-    sleepers_.fetch_sub(1);
+    waiters_.fetch_add(1);
+    if (count_.load() == seen) syscall(SYS_futex, &count_, FUTEX_WAIT, seen, &timeout, nullptr, 0);
+    waiters_.fetch_sub(1);
   }
 
  private:
-  std::atomic<std::uint32_t> rings_;
-  std::atomic<std::uint32_t> sleepers_;  ///< too many if some died in their sleep: a needless call, no more
+  std::atomic<std::uint32_t> count_;
+  std::atomic<std::uint32_t> waiters_;  ///< too many if some died in their sleep, which costs a needless call
 };
 
-/// Stays awake for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from
-/// whoever needs it, which shows only afterwards: after each vigil in vain, twice as many are left out.
-class Vigil {
+/// Spins for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from whoever needs
+/// it, which shows only afterwards: after each spin in vain, twice as many waits (16 to 4096) go without.
+class AdaptiveSpin {
  public:
-  /// @return whether the bell has rung since its rings were counted
-  bool Hears(const Bell& bell, std::uint32_t heard) {
+  /// @return whether there has been an event since the count was read
+  bool Spin(const EventCount& event, std::uint32_t seen) {
     if (left_out_ > 0) {
       --left_out_;
-      return bell.rings() != heard;
+      return event.count() != seen;
     }
     const Clock::time_point end = Clock::now() + kLength;
     do {
-      if (bell.rings() != heard) {
+      if (event.count() != seen) {
         to_leave_out_ = kFewest;
         return true;
       }
@@ -99,26 +99,26 @@ class Vigil {
   int to_leave_out_ = kFewest;
 };
 
-/// Leaves the core to others up to so many times, as long as the bell has not rung since its rings were counted. With many
+/// Yields the core to others up to so many times, as long as there has been no event since the count was read. With many
 /// ranks on a core that takes less time than to sleep and be woken, as long as the others are ranks, too; beside other work
-/// each turn may take as long as that wants.
-/// @return whether it has rung
-inline bool HearsInTurns(const Bell& bell, std::uint32_t heard, std::uint32_t turns) {
+/// each yield may take as long as that wants.
+/// @return whether there has been an event
+inline bool YieldUntil(const EventCount& event, std::uint32_t seen, std::uint32_t yields) {
   constexpr std::uint32_t kMost = 64;  // so that whoever waits for long sleeps soon
-  for (std::uint32_t turn = 0; turn < std::min(turns, kMost) && bell.rings() == heard; ++turn) sched_yield();
-  return bell.rings() != heard;
+  for (std::uint32_t i = 0; i < std::min(yields, kMost) && event.count() == seen; ++i) sched_yield();
+  return event.count() != seen;
 }
 
 /// A message from one process to another, with the number of the call that it belongs to. Its bytes follow it.
-class Letter {
+class MessageBuffer {
  public:
-  static constexpr std::size_t Size(std::size_t room) { return sizeof(Letter) + room; }
+  static constexpr std::size_t Size(std::size_t room) { return sizeof(MessageBuffer) + room; }
 
   /// The call whose message it holds; 0: none yet.
   std::uint64_t call() const { return call_.load(std::memory_order_acquire); }
 
   /// @param room  bytes that follow it
-  /// @return whether the message fits; if not, the letter says that instead
+  /// @return whether the message fits; if not, the buffer says that instead
   template <class Message>
   bool Write(std::uint64_t call, const Message& message, std::uint32_t room) {
     const std::uint32_t size = ros::serialization::serializationLength(message);
@@ -162,8 +162,8 @@ struct ExchangeLayout {
   std::uint32_t request_room = 0;  ///< bytes of the largest message
   std::uint32_t reply_room = 0;
 
-  std::size_t RequestSize() const { return WholeLines(Letter::Size(request_room)); }
-  std::size_t SlotSize() const { return RequestSize() + WholeLines(Letter::Size(reply_room)); }
+  std::size_t RequestSize() const { return WholeLines(MessageBuffer::Size(request_room)); }
+  std::size_t SlotSize() const { return RequestSize() + WholeLines(MessageBuffer::Size(reply_room)); }
   std::size_t SlotOffset(std::uint32_t slot) const;
   std::size_t Size() const { return SlotOffset(slots); }
   bool FitsInto(std::size_t size) const {
@@ -181,12 +181,11 @@ struct ExchangeHead {
   ExchangeLayout layout;
   std::atomic<std::uint32_t> threads;      ///< of the ranks that use the memory
   std::atomic<std::uint32_t> master_core;  ///< that the master runs on
-  std::atomic<std::uint32_t>
-      turns;  ///< that a rank leaves to others before it sleeps, where cores are shared
-  Bell requests;
+  std::atomic<std::uint32_t> yields;       ///< of a rank before it sleeps, where cores are shared
+  EventCount requests;
   alignas(kCacheLine) std::atomic<std::int32_t> unreplied;
   std::atomic<std::uint32_t> last_slot;  ///< of the last one to reply
-  Bell replies;
+  EventCount replies;
 };
 
 inline std::size_t ExchangeLayout::SlotOffset(std::uint32_t slot) const {
@@ -218,14 +217,14 @@ class ExchangeMemory {
 
   const ExchangeLayout& layout() const { return layout_; }
   ExchangeHead& head() const { return *static_cast<ExchangeHead*>(region_.get_address()); }
-  Letter& request(std::uint32_t slot) const { return LetterAt(layout_.SlotOffset(slot)); }
-  Letter& reply(std::uint32_t slot) const {
-    return LetterAt(layout_.SlotOffset(slot) + layout_.RequestSize());
+  MessageBuffer& request(std::uint32_t slot) const { return BufferAt(layout_.SlotOffset(slot)); }
+  MessageBuffer& reply(std::uint32_t slot) const {
+    return BufferAt(layout_.SlotOffset(slot) + layout_.RequestSize());
   }
 
  private:
-  Letter& LetterAt(std::size_t offset) const {
-    return *reinterpret_cast<Letter*>(static_cast<std::uint8_t*>(region_.get_address()) + offset);
+  MessageBuffer& BufferAt(std::size_t offset) const {
+    return *reinterpret_cast<MessageBuffer*>(static_cast<std::uint8_t*>(region_.get_address()) + offset);
   }
 
   boost::interprocess::mapped_region region_;

@@ -20,7 +20,7 @@ class SharedSlot {
   /// Waits for a call. @return whether there is one
   bool Wait(double timeout_s);
   /// Ends a wait in another thread.
-  void Wake() { memory_.head().requests.Ring(); }
+  void Wake() { memory_.head().requests.Notify(); }
 
   /// @throws std::exception if the request cannot be read
   void Read(train_brake_msgs::StepRequest& request);
@@ -30,7 +30,7 @@ class SharedSlot {
   train_brake_msgs::ExchangeMemory memory_;
   const std::uint32_t slot_;
   const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
-  train_brake_msgs::Vigil vigil_;
+  train_brake_msgs::AdaptiveSpin spin_;
   std::uint64_t served_;  ///< number of the last call that was read
 };
 

@@ -46,8 +46,8 @@ class LateWatch {
   LateWatch(const std::vector<train_dynamics::Rank>& ranks, std::string when, double deadline_s,
             const std::function<bool()>& interrupted);
 
-  /// For how long to wait before looking at the watch [s].
-  static constexpr double kGlance = Patience::kGlance;
+  /// For how long to wait before the time is checked [s].
+  static constexpr double kCheckPeriod = Patience::kCheckPeriod;
 
   /// Looks at the watch.
   /// @param pending  [rank] whether it is still waited for

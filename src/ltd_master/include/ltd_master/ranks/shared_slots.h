@@ -17,8 +17,8 @@ namespace ltd_master {
 
 /// The master's end of train_brake_msgs/exchange_memory.h: calls of Step to ranks on the same machine.
 ///
-/// Ranks that share cores sleep between two calls, or leave the core to others for some turns first: whichever takes less
-/// time on this machine, beside what else it does (train/faster_way.h).
+/// Ranks that share cores sleep between two calls, or yield to others some times first: whichever takes less time
+///  on this machine, beside what else it does (train/faster_way.h).
 ///
 /// Whether a rank is on the same machine, only that rank can tell: it is offered a slot when it is configured,
 /// and either takes it or not.
@@ -65,8 +65,8 @@ class SharedSlots {
   std::uint32_t next_slot_ = 0;  ///< never given to a rank
   std::uint64_t call_ = 0;       ///< number of the present one
   const unsigned cores_ = static_cast<unsigned>(train_dynamics::UsableCores());
-  train_brake_msgs::Vigil vigil_;
-  std::uint32_t heard_ = 0;  ///< rings of the bell for replies
+  train_brake_msgs::AdaptiveSpin spin_;
+  std::uint32_t seen_ = 0;  ///< events of `replies`
   train_dynamics::FasterWay faster_;
   std::chrono::steady_clock::time_point begin_, end_;  ///< of the last call
 };

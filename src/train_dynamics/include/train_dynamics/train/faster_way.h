@@ -14,7 +14,7 @@ namespace train_dynamics {
 /// rounds are fast and few take a hundred times as long.
 class FasterWay {
  public:
-  static constexpr double kGlance = 5e-3, kTrial = 20e-3;  ///< of work that a judgement is based on [s]
+  static constexpr double kShortest = 5e-3, kTrial = 20e-3;  ///< of work that a judgement is based on [s]
   static constexpr double kFirstWhile = 0.25, kLongestWhile = 4.0;
 
   /// The way to take next: 0 or 1.
@@ -25,7 +25,7 @@ class FasterWay {
     sum_s_ += seconds;
     since_trial_s_ += seconds;
     rounds_ += 1.0;
-    if (sum_s_ < kGlance) return;
+    if (sum_s_ < kShortest) return;
     const double mean_s = sum_s_ / rounds_, other_s = mean_s_[1 - way_];
     if (is_trial_ && mean_s > other_s) {
       mean_s_[way_] = mean_s;
