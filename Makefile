@@ -96,9 +96,9 @@ deps-bench: deps
 	  echo "make bench: goes on without them; what needs MPI or Valgrind is left out" >&2
 
 .PHONY: bench
-bench: deps-bench build ## measure it all, MPI beside it: table here and in docs/performance.md; ONLY=runs,exchange for parts
+bench: deps-bench build ## measure it all, MPI beside it: table here and in docs/performance.md; ONLY=runs,exchange or ONLY=missing for parts, AGAINST=FOLDER (an older build)
 	@$(release) train_dynamics_bench train_results_bench $(quietly)
-	@. devel/setup.bash; PATH=/usr/bin:$$PATH /usr/bin/python3 tools/bench --only '$(ONLY)'
+	@. devel/setup.bash; PATH=/usr/bin:$$PATH /usr/bin/python3 tools/bench --only '$(ONLY)' --against '$(AGAINST)'
 
 .PHONY: test-cluster
 test-cluster: build ## a train over three machines (network namespaces with sshd; needs root)

@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from unittest import mock
 
@@ -22,11 +23,13 @@ import rosunit
 BENCH = pathlib.Path(__file__).resolve().parents[1] / "tools" / "bench"
 sys.path.insert(0, str(BENCH))
 
+import against  # noqa: E402
 import exchange  # noqa: E402
 import limit  # noqa: E402
 import machine  # noqa: E402
 import measure  # noqa: E402
 import page  # noqa: E402
+import profile_ranks  # noqa: E402
 import targets  # noqa: E402
 import vehicles  # noqa: E402
 import workspace  # noqa: E402
@@ -133,17 +136,82 @@ class BenchTools(unittest.TestCase):
 
         with mock.patch.multiple(workspace, Launch=Launch, mpi_train=mpi), mock.patch.object(
             exchange, "EXCHANGES", {2: 10, 242: 10}
-        ):
+        ), mock.patch.object(exchange, "PROFILES", [("shared memory", 2, 1), ("MPI", 2, 1)]):
             tables, facts = exchange.run()
         rows = {row[0]: row[1:] for row in tables[0].rows}
         self.assertEqual(("0.75 x", "0.25 x"), rows["shared memory to MPI"])
         self.assertEqual(("0.5 ... 1", "0.2 ... 0.333"), rows["from ... to"])
         self.assertEqual(("0.75 x", "0.25 x"), rows["TCP to MPI"])
         self.assertAlmostEqual(0.25, facts["to_mpi_242"])
-        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=lambda *_: None):
+        self.assertEqual(["shared memory, 2 ranks", "MPI, 2 ranks"], [row[0] for row in tables[2].rows])
+        with mock.patch.multiple(workspace, Launch=Launch, mpi_train=lambda *_: None), mock.patch.object(
+            exchange, "PROFILES", [("MPI", 2, 1)]
+        ):
             tables, facts = exchange.run()
         self.assertIsNone(facts["to_mpi_242"])
         self.assertEqual({"-"}, set(tables[0].rows[-1][1:]))
+
+    def test_the_profile_counts_what_the_ranks_do(self):
+        script = "import sys, time\nprint('up', flush=True)\nwhile True: time.sleep(0.001)"
+        with tempfile.TemporaryDirectory() as folder:
+            rank = pathlib.Path(folder) / "a_rank"
+            rank.symlink_to(sys.executable)
+            ranks = [subprocess.Popen([str(rank), "-c", script], stdout=subprocess.PIPE) for _ in range(2)]
+            try:
+                for process in ranks:
+                    process.stdout.readline()
+                with profile_ranks.Watch("a_rank", 2) as watch:
+                    time.sleep(3)
+                with profile_ranks.Watch("a_rank", 3) as of_too_many:
+                    time.sleep(0.5)
+            finally:
+                for process in ranks:
+                    process.kill()
+                    process.wait()
+                    process.stdout.close()
+        self.assertIsNone(of_too_many.per_exchange(1))
+        of_a_second = watch.per_exchange(1)
+        self.assertTrue(0 < of_a_second["switches"] < 1100, of_a_second)  # it sleeps 1000 times, or is held up
+        self.assertTrue(0 < of_a_second["cpu_us"] < 1e6, of_a_second)
+        self.assertAlmostEqual(0.5 * of_a_second["cpu_us"], watch.per_exchange(0.5)["cpu_us"])
+
+    def test_missing_are_those_without_results_of_this_commit(self):
+        main = bench_main()
+        results = {name: {"commit": workspace.commit()} for name in main.SECTIONS if name not in ("runs", "graph")}
+        results["graph"] = {"commit": "another"}
+        with mock.patch.object(main, "_load", lambda: results):
+            self.assertEqual(["runs", "graph"], main._chosen(["missing"]))
+        self.assertEqual(main.SECTIONS, main._chosen([]))
+        self.assertEqual(["runs"], main._chosen(["runs"]))
+        with mock.patch.object(workspace, "OTHER", pathlib.Path("/")):
+            self.assertEqual(["runs", "against"], main._chosen(["runs"]))
+
+    def test_against_compares_two_builds(self):
+        with tempfile.TemporaryDirectory() as folder:
+            other = pathlib.Path(folder)
+            programs = other / "devel" / "lib" / "train_sim"
+            programs.mkdir(parents=True)
+            (programs / "train_sim").write_text("a script is not the program")
+            with mock.patch.object(workspace, "OTHER", other), self.assertRaisesRegex(measure.Failed, "build it first"):
+                workspace.other_program("train_sim")
+
+            def build(seconds):
+                program = programs / f"takes_{seconds}"
+                program.write_text(
+                    f'#!/bin/sh\nsleep {seconds}; : $((n = 0)); while [ $n -lt 3000 ]; do n=$((n + 1)); done; echo \'{{"state_digest": "1"}}\'\n'
+                )
+                program.chmod(0o755)
+                return lambda: (program, "scenario")
+
+            with mock.patch.multiple(
+                against, _own=build(0.1), _other=build(0.3), REPETITIONS={"2d": 1, "ltd": 1}
+            ), mock.patch.object(workspace, "OTHER", other):
+                tables, facts = against.run()
+        self.assertTrue(facts["2d_same_digest"] and facts["ltd_same_digest"])
+        self.assertTrue(all(facts[f"{model}_{what}"] > 0 for model in ("2d", "ltd") for what in ("bag", "no_record")))
+        self.assertEqual(8, len(tables[0].rows))
+        with self.assertRaisesRegex(measure.Failed, "AGAINST="):
+            against.run()
 
     def test_a_section_that_fails_leaves_the_others(self):
         main = bench_main()
@@ -198,6 +266,13 @@ class BenchTools(unittest.TestCase):
         )
         self.assertEqual("MISSED by 150 %", rows["emergency stop with its bag, LTD, one thread"][2])
         self.assertEqual("not measured", rows["ROS, 242 ranks: an exchange against MPI"][0])
+
+    def test_the_verdict_names_what_is_missed(self):
+        lines = targets.verdict({"runs": {"2d_1_ns": 110, "ltd_1_wall_s": 0.3}}).splitlines()
+        self.assertEqual(f"1 of {len(targets.TARGETS)} targets are met.", lines[0])
+        self.assertEqual("MISSED: emergency stop with its bag, LTD, one thread", lines[1])
+        self.assertEqual(len(targets.TARGETS), len(lines))
+        self.assertTrue(all(line.startswith("not measured: ") for line in lines[2:]))
 
     def test_tables_are_aligned(self):
         text = as_text(

@@ -1,5 +1,6 @@
 """What an exchange costs over the number of ranks, by every way to call them, beside MPI; start-up and shut-down."""
 import measure
+import profile_ranks
 import workspace
 from table import Table, number, times
 
@@ -10,6 +11,13 @@ WAYS = {  # how the master calls wagon nodes: arguments of train.launch
 }
 PAIRED = "shared memory"  # beside MPI at any number of ranks; the first of WAYS
 MANY_RANKS = 100
+PROFILES = [  # way, ranks, simulated seconds: a few seconds of wall time
+    (PAIRED, workspace.VEHICLES, 4),
+    ("MPI", workspace.VEHICLES, 4),
+    ("TCP", workspace.VEHICLES, 1),
+    (PAIRED, 22, 20),
+    ("MPI", 22, 20),
+]
 
 
 def run():
@@ -51,7 +59,36 @@ def run():
         for ranks in EXCHANGES:
             ratios = _to_mpi(cost, way, ranks)
             facts[f"{name}_{ranks}"] = ratios and measure.median(ratios)
-    return [table, starts], facts
+    return [table, starts, _profiles(facts)], facts
+
+
+def _profiles(facts):
+    """What the ranks' time goes into; facts by way, and by number of ranks where it is not one per vehicle."""
+    rows = []
+    for way, ranks, simulated_s in PROFILES:
+        settings = [f"duration_s={simulated_s}"]
+        with profile_ranks.Watch("mpi_train" if way == "MPI" else "wagon_node", ranks) as watch:
+            if way == "MPI":
+                run = workspace.mpi_train(ranks, settings)
+                seconds = run and run["wall_s"] / run["exchanges"]
+            else:
+                seconds = workspace.Launch(ranks, *WAYS[way], settings=settings).per_exchange_s()
+        profile = watch.per_exchange(seconds) if seconds else None
+        name = way.replace(" ", "_") + ("" if ranks == workspace.VEHICLES else f"_{ranks}")
+        facts.update({f"{name}_{what}": value for what, value in (profile or {}).items()})
+        values = profile or dict.fromkeys(("cpu_us", "system", "wait_us", "switches"))
+        rows.append(
+            (
+                f"{way}, {ranks} ranks",
+                number(_ms(seconds and [seconds])),
+                number(values["cpu_us"]),
+                "-" if values["system"] is None else f"{100 * values['system']:.0f} %",
+                number(values["wait_us"]),
+                number(values["switches"]),
+            )
+        )
+    columns = ["wall [ms]", "on a core [us]", "in the kernel", "waiting for one [us]", "switches"]
+    return Table("one exchange, per rank", columns, rows)
 
 
 def _in_turn(ranks, launches, mpi):

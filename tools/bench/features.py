@@ -21,6 +21,11 @@ GRADES = (
 DIPS = "track={name: dips, dips: [{from_m: 40, depth_m: 0.01, length_m: 10}]}"
 PROTECTED = [f"train.consist[{group}].vehicle.wheel_slide_protection=threshold_3state" for group in range(4)]
 
+
+def _rigging(setting):
+    return [f"train.consist[{group}].vehicle.brake_rigging.{setting}" for group in range(4)]
+
+
 # fact, what, model, settings
 FEATURES = [
     ("grades", "three grades under the train", "2d", [GRADES]),
@@ -29,6 +34,8 @@ FEATURES = [
     ("protected", "wheel-slide protection on every vehicle", "2d", PROTECTED),
     ("mixed", "one half of the vehicles LTD", "2d", ["train.consist[1].model=ltd"]),
     ("gears", "draft gears of damped_stick friction", "2d", ["train.connection=friction_gear"]),
+    ("reaction", "shoes that react on the frames", "2d", _rigging("reaction=frame")),
+    ("tread", "friction by the tread's speed", "2d", _rigging("friction_speed=tread")),
     ("pipe", "the pneumatic brake", "2d", ["brake=ab_head_end"]),
     ("ltd_grades", "three grades under the train", "ltd", [GRADES]),
     ("ltd_gears", "draft gears of damped_stick friction", "ltd", ["train.connection=friction_gear"]),

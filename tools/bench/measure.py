@@ -18,10 +18,13 @@ class Failed(Exception):
 class Run:
     """One process, from start to exit: wall_s, cpu_s, stdout."""
 
-    def __init__(self, command, timeout_s=600):
+    def __init__(self, command, timeout_s=600, libraries=None):
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(libraries)} if libraries else None
         with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
             begin = time.monotonic()
-            process = subprocess.Popen([str(c) for c in command], stdout=out, stderr=err, start_new_session=True)
+            process = subprocess.Popen(
+                [str(c) for c in command], stdout=out, stderr=err, start_new_session=True, env=environment
+            )
             with _ended_after(process, timeout_s):
                 _, status, usage = os.wait4(process.pid, 0)
             self.wall_s = time.monotonic() - begin

@@ -43,7 +43,9 @@ def write(machine, tables, facts):
             return blocks[name]
         chosen = tables.get(name, [])
         chosen = chosen[int(index) - 1 : int(index)] if index else chosen
-        return "\n\n".join(table.as_markdown() for table in chosen) or f"*Not measured: `make bench ONLY={name}`.*"
+        return "\n\n".join(table.as_markdown() for table in chosen) or (
+            f"*Not measured: `make bench {'AGAINST=FOLDER' if name == 'against' else f'ONLY={name}'}`.*"
+        )
 
     text = re.sub(r"^\{(\w+(?: \d)?)\}$", block, with_facts(TEMPLATE.read_text()), flags=re.MULTILINE)
     PAGE.write_text(re.sub(r"\n{3,}", "\n\n", text))

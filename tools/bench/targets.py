@@ -9,6 +9,9 @@ TARGETS = [
     ("pneumatic brake, share of a 2D train's step", "vehicles", "pneumatic_share", 15, "%"),
     ("pneumatic brake alone, share of real time", "vehicles", "pneumatic_of_real_time", 5, "%"),
     ("a wagon's step against the machine's limit", "limit", "to_limit", 1.9, "x"),
+    ("make bench, without the build", "bench", "minutes", 20, "min"),
+    ("emergency stop with its bag, 2D, one thread, against before", "against", "2d_bag", 0.75, "x"),
+    ("emergency stop with its bag, LTD, one thread, against before", "against", "ltd_bag", 0.6, "x"),
     ("emergency stop with its bag, 2D, one thread", "runs", "2d_1_wall_s", 1.8, "s"),
     ("emergency stop with its bag, 2D, all cores", "runs", "2d_{cores}_wall_s", 1.4, "s"),
     ("emergency stop with its bag, LTD, one thread", "runs", "ltd_1_wall_s", 0.12, "s"),
@@ -32,6 +35,8 @@ TARGETS = [
     ("a dip adds to 2D", "features", "dips_ns", 30, "ns per vehicle-step"),
     ("wheel-slide protection adds to 2D", "features", "protected_ns", 40, "ns per vehicle-step"),
     ("damped_stick gears add to 2D", "features", "gears_ns", 10, "ns per vehicle-step"),
+    ("shoes that react on the frames add to 2D", "features", "reaction_ns", 15, "ns per vehicle-step"),
+    ("friction by the tread's speed adds to 2D", "features", "tread_ns", 10, "ns per vehicle-step"),
     ("the pneumatic brake adds to 2D", "features", "pipe_ns", 60, "ns per vehicle-step"),
     ("grades add to LTD", "features", "ltd_grades_ns", 3, "ns per vehicle-step"),
     ("damped_stick gears add to LTD", "features", "ltd_gears_ns", 10, "ns per vehicle-step"),
@@ -44,9 +49,17 @@ RECORDING = """the recorder's thread works {vehicles.bag_us} us for a record, an
 converted into the open chunk and copied by the kernel into its page cache, and checkpoints need a digest of the bag. With
 a thread of the run on every core, the recorder's takes its time from one of them, and the others wait for that one at the
 barrier of the step."""
-RANKS = """with many ranks on a core an exchange is bound by changes between processes, one for each rank and exchange
-beside its system call, as it is over MPI; with few, by the time that a sleeping rank takes to wake up
+RANKS = """with many ranks on a core an exchange is bound by changes between processes
+([table](#ranks-and-mpi)): {exchange.shared_memory_switches} for each rank and exchange, which takes
+{exchange.shared_memory_cpu_us} us of a core from waking up to sleeping, {exchange.shared_memory_system %} of it in the
+kernel; the ranks of MPI, which never sleep, change {exchange.MPI_switches} times."""
+FEW_RANKS = """with few ranks an exchange is bound by the time that a sleeping process takes to wake up: the master once and
+each rank once, {exchange.shared_memory_22_cpu_us} us of a core for each of 22 ranks. Those of MPI stay awake and take
+{exchange.MPI_22_cpu_us} us, at the cost of whatever else wants their cores
 ([lockstep.md](lockstep.md#memory-in-common))."""
+TCP = """each rank and exchange takes {exchange.TCP_cpu_us} us of a core, {exchange.TCP_system %} of it in the kernel, which
+carries every message through the network's layers on loopback: three system calls of the rank (wait, receive, send), two of
+the master, against one through shared memory ({exchange.shared_memory_cpu_us} us)."""
 SPREAD = """an exchange costs about {scaling.{model}_fixed_us} us however short the train is, and 50 vehicles fill
 {scaling.lanes_of_the_last_pack} of the {scaling.lanes} lanes of their last pack, which takes as long as a full one."""
 REASONS = {
@@ -57,7 +70,9 @@ divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_re
     "2d_1_recording": RECORDING,
     "to_limit": """a wagon has more in flight than any set of registers holds, so that most of its instructions move numbers
 ([below](#how-far-from-the-machines-limit)); instructions alone take {limit.issue_share %} of the time.""",
-    **{fact: RANKS for fact in ("to_mpi_2", "to_mpi_8", "to_mpi_22", "to_mpi_242", "tcp_to_mpi_242", "242_ms")},
+    **{fact: RANKS for fact in ("to_mpi_242", "242_ms")},
+    **{fact: FEW_RANKS for fact in ("to_mpi_2", "to_mpi_8", "to_mpi_22")},
+    "tcp_to_mpi_242": TCP,
     "2d_spread": SPREAD.replace("{model}", "2d"),
     "ltd_spread": SPREAD.replace("{model}", "ltd"),
 }
@@ -75,6 +90,17 @@ def table(facts):
         verdict = f"MISSED by {margin}" if value > limit else f"met, {margin} below" if value > 0 else "met"
         rows.append((what, number(value), f"{limit} {unit}", verdict))
     return Table("targets", ["measured", "at most", "verdict"], rows)
+
+
+def verdict(facts):
+    """One line: how many targets are met, and which ones are not."""
+    values = [(what, value, limit) for what, _, value, limit, _ in _measured(facts)]
+    known = [(what, value > limit) for what, value, limit in values if value is not None]
+    misses = [what for what, is_missed in known if is_missed]
+    unknown = [what for what, value, _ in values if value is None]
+    lines = [f"{len(known) - len(misses)} of {len(values)} targets are met."]
+    lines += [f"MISSED: {what}" for what in misses] + [f"not measured: {what}" for what in unknown]
+    return "\n".join(lines)
 
 
 def missed(facts):

@@ -13,6 +13,7 @@ import measure
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ROOT / "devel" / "lib"
+OTHER = None  # a workspace with another build, to compare with
 EMERGENCY = ROOT / "config" / "scenarios" / "emergency.yaml"
 VEHICLES = 242
 
@@ -43,6 +44,14 @@ def commit():
         return git("rev-parse", "--short=12", "HEAD") + ("-dirty" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"  # sources without their history
+
+
+def other_program(name):
+    """Of the other workspace, wherever its build left it."""
+    for path in sorted((OTHER / "devel" / "lib").glob(f"*/{name}")):
+        if path.read_bytes()[:4] == b"\x7fELF":
+            return path
+    raise measure.Failed(f"{OTHER} has no devel/lib/*/{name}: build it first (make build)")
 
 
 def _train_sim(arguments, settings):
