@@ -26,7 +26,7 @@ import train_brake.run_files
 from train_brake import Table
 from train_brake import bag as bag_reader
 from train_brake_report import cards, command, consist, figure, paper, series, slides, style, wave
-from train_brake_report.figures import changes, space_time
+from train_brake_report.figures import changes, route, space_time
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs
 from train_brake_report.track import Track
@@ -421,7 +421,45 @@ class ReportTest(unittest.TestCase):
 
     def test_a_train_at_rest(self):
         page = self.page(simulated("rest", "../../test/short_train", "--set", "initial_speed_kmh=0"))
-        self.assertIn("The train stood at the start", page.left_out["Energy ledger"])
+        self.assertIn("The train stood all the time", page.left_out["Energy ledger"])
+
+    def test_a_train_that_starts_has_its_energy_and_its_notches(self):
+        run = simulated(
+            "started",
+            "drive_and_stop",
+            "--set",
+            "duration_s=200",
+            "--set",
+            "dt_s=0.002",
+            "--set",
+            "exchange_interval_s=0.002",
+            "--set",
+            "commands=[{time_s: 0, kind: throttle, notch: 8}, {time_s: 60, kind: throttle, notch: 3}, "
+            "{time_s: 150, kind: throttle, notch: 0}]",
+        )
+        page = self.page(run)
+        summary = json.loads((run / "summary.json").read_text())["energy"]
+        told = page.caption("energy")
+        self.assertIn(f"Traction added {1e-6 * summary['traction_work_j']:.0f} MJ", told)
+        share = float(re.search(r"residual (\S+) of the energy turned over", told)[1].replace("\u2212", "-"))
+        self.assertAlmostEqual(1.0, share / summary["residual_share"], delta=0.05)
+        at = Run(run, None)
+        of_time = dict(zip(at.recording.state.time_s.round(3), route.notches(at)))
+        self.assertEqual([8, 8, 3, 3, 0], [of_time[t] for t in (0.0, 59.9, 60.0, 149.9, 150.0)])
+
+        # Percentiles and energy per tonne and km by the records themselves.
+        table = dict(route.quantities(group_of(run)).table.rows)
+        recorded = train_brake.load(run)
+        state, forces = recorded["state"], recorded["in_train_forces"]["coupler_force_n"].ravel()
+        tension = numpy.sort(numpy.where(forces > 0, forces, 0.0))[::-1]
+        at_95 = float(
+            re.search(r"95 %: (\d+) kN", table["in-train tension, percentiles of all records and connections"])[1]
+        )
+        self.assertAlmostEqual(1e-3 * tension[len(tension) // 20], at_95, delta=0.6)  # a twentieth of them are larger
+        tonnes = 80.0 + 10 * 84.0  # a V 90, ten loaded Facs
+        km = 1e-3 * (state["position_m"][-1].mean() - state["position_m"][0].mean())
+        per_tkm = float(re.match(r"([\d.]+) kJ", table["work of traction per tonne and km"])[1])
+        self.assertAlmostEqual(1e-3 * summary["traction_work_j"] / (tonnes * km), per_tkm, delta=0.051)
 
     def test_an_ltd_run_has_no_slip(self):
         page = self.page(ltd())

@@ -9,7 +9,7 @@ from train_brake_report.run import Run
 
 MJ = 1e-6
 LEAST_J = 1e-3  # what is worth a line
-LARGE = 0.01  # of the initial energy: what is seen in the stack
+LARGE = 0.01  # of the energy turned over: what is seen in the stack
 
 
 def _series(run: Run) -> tuple:
@@ -28,27 +28,35 @@ def _series(run: Run) -> tuple:
 def _why_not(run: Run) -> str:
     if len(run.recording.ledger) < 2:
         return "the recording has no two messages of the type train_brake_msgs/EnergyLedger"
-    if run.recording.ledger[0].initial_j <= 0.0:
-        return "the train stood at the start: there is no initial energy to measure the residual by"
+    if turned_over_j(run) < LEAST_J:
+        return "the train stood all the time: no energy was turned over"
     return ""
 
 
+def turned_over_j(run: Run) -> float:
+    """What the residual is measured by, as residual_share of summary.json: the largest of what was dissipated, what the
+    stored energy changed by, and the work of gravity and traction, at the last ledger."""
+    last = run.recording.ledger[-1]
+    stored = last.kinetic_j + last.potential_j - last.initial_j
+    return max(abs(sum(last.dissipated_j)), abs(stored), abs(last.gravity_work_j) + abs(last.traction_work_j))
+
+
 def _residual_share(run: Run) -> numpy.ndarray:
-    _, _, initial_j, residual_j = _series(run)
-    return residual_j / initial_j
+    return _series(run)[3] / turned_over_j(run)
 
 
 def draw(group: Group) -> Figure:
     runs, not_shown = group.drawable(_why_not)
     shown = next((run for run in runs if run.model == "2d"), runs[0])
-    time_s, energies, initial_j, _ = _series(shown)
+    time_s, energies, _, _ = _series(shown)
+    whole_j = turned_over_j(shown)
     canvas = new_canvas(9.6)
     stack, single, below = canvas.subplots(3, 1, sharex=True, height_ratios=[3, 4, 2])
 
     dissipated = {name: e for name, e in energies.items() if name not in ("kinetic", "potential")}
     large = {"kinetic": energies["kinetic"]}
     large.update(
-        sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * initial_j), key=lambda item: -item[1][-1])
+        sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * whole_j), key=lambda item: -item[1][-1])
     )
     rest = sum(dissipated.values()) - sum(e for n, e in large.items() if n != "kinetic")
     stack.stackplot(
@@ -68,7 +76,7 @@ def draw(group: Group) -> Figure:
     scale = 10.0 ** numpy.floor(numpy.log10(largest)) if largest > 0.0 else 1.0
     for run in runs:
         below.plot(_series(run)[0], shares[run] / scale, label=run.label, marker=".", **group.line(run))
-    below.set_ylabel(f"residual over initial\nenergy [{minus(f'{scale:.0e}')}]")
+    below.set_ylabel(f"residual over energy\nturned over [{minus(f'{scale:.0e}')}]")
     below.set_xlabel("time [s]")
     if len(runs) > 1:
         style.legend_above(below)
@@ -76,17 +84,18 @@ def draw(group: Group) -> Figure:
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is stack)
     caption = (
-        "Top: the kinetic energy turns into heat. Middle: what each element has taken up since the start, on a "
+        "Top: kinetic energy and what has turned into heat. Middle: what each element has taken up since the start, on a "
         "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
         f"{numpy.median(numpy.diff(time_s)):g} s."
     )
     if len(group.runs) > 1:
         caption += f" Top and middle: {shown.label}."
-    gravity = shown.recording.ledger[-1].gravity_work_j
-    if abs(gravity) > LARGE * initial_j:
-        caption += f" The grade added {MJ * gravity:.0f} MJ."
+    last = shown.recording.ledger[-1]
+    for name, work_j in (("The grade", last.gravity_work_j), ("Traction", last.traction_work_j)):
+        if abs(work_j) > LARGE * whole_j:
+            caption += f" {name} {'added' if work_j > 0.0 else 'took'} {MJ * abs(work_j):.0f} MJ."
     for run in runs:
-        caption += f" {run.label}: residual {minus(f'{shares[run][-1]:+.1e}')} of the initial energy at the end."
+        caption += f" {run.label}: residual {minus(f'{shares[run][-1]:+.1e}')} of the energy turned over at the end."
     return Figure("energy", "Energy ledger", caption + not_shown, canvas)
 
 

@@ -1,6 +1,7 @@
 """The run over the route: speed against the limits, forces and brakes over the place, and the route below them."""
 
 import numpy
+from matplotlib.ticker import MaxNLocator
 
 from train_brake_report import consist, style
 from train_brake_report.figure import Figure, LeftOut, Table, minus, new_canvas
@@ -24,6 +25,16 @@ def permitted_kmh(run: Run, track: Track) -> numpy.ndarray:
     return track.limits.lowest(position[:, -1] - 0.5 * run.lengths_m[-1], position[:, 0] + 0.5 * run.lengths_m[0])
 
 
+def notches(run: Run) -> numpy.ndarray:
+    """Of the throttle (positive) or the dynamic brake (negative) that the last command asks for, at each record."""
+    first = next((group for group in run.config["train"]["consist"] if group["vehicle"].get("traction")), {})
+    at_start = first.get("initial_throttle_notch", 0.0) - first.get("initial_dynamic_brake_notch", 0.0)
+    commands = [command for command in run.commands if "notch" in command]
+    times = numpy.array([command["time_s"] for command in commands])
+    values = [at_start] + [(-1.0 if c["kind"] == "dynamic_brake" else 1.0) * c["notch"] for c in commands]
+    return numpy.array(values)[numpy.searchsorted(times, run.recording.state.time_s + 1e-9)]
+
+
 def _why_not(run: Run) -> str:
     if run.recording.state is None:
         return "the recording has no topic of the type train_brake_msgs/TrainState"
@@ -39,9 +50,19 @@ def draw(group: Group) -> Figure:
     track = Track(first.config["track"])
     with_forces = [run for run in runs if run.recording.forces is not None and run.vehicles > 1]
     with_pressures = [run for run in runs if run.recording.pressures is not None]
-    kinds = ["speed"] + ["forces"] * bool(with_forces) + ["pressures"] * bool(with_pressures)
+    with_handles = [run for run in runs if any("notch" in command for command in run.commands)]
+    kinds = ["speed"] + ["handles"] * bool(with_handles)
+    kinds += ["forces"] * bool(with_forces) + ["pressures"] * bool(with_pressures)
     kinds += ["height", "grade"] * bool(track.grades) + ["curvature"] * bool(track.curvatures)
-    sizes = {"speed": 3.2, "forces": 2.4, "pressures": 1.7, "height": 1.6, "grade": 1.5, "curvature": 1.5}
+    sizes = {
+        "speed": 3.2,
+        "handles": 1.5,
+        "forces": 2.4,
+        "pressures": 1.7,
+        "height": 1.6,
+        "grade": 1.5,
+        "curvature": 1.5,
+    }
     canvas = new_canvas(sum(sizes[kind] for kind in kinds))
     panels = dict(
         zip(
@@ -59,7 +80,6 @@ def draw(group: Group) -> Figure:
     for run in runs:
         panels["speed"].plot(KM * at_m[run], numpy.abs(run.mean_speed_kmh), label=run.label, **group.line(run))
     panels["speed"].set_ylabel("speed [km/h]")
-    panels["speed"].set_ylim(bottom=0.0)
     if track.limits:
         order = numpy.argsort(at_m[first], kind="stable")
         permitted = permitted_kmh(first, track)
@@ -72,8 +92,18 @@ def draw(group: Group) -> Figure:
             label="lowest limit under the train",
         )
         caption += " Dashed: the lowest speed limit under the whole train."
+    panels["speed"].set_ylim(bottom=0.0)  # when all is drawn: it ends the search for the top
     if len(runs) > 1 or track.limits:
         style.legend_above(panels["speed"])
+    for run in with_handles:
+        panels["handles"].plot(KM * at_m[run], notches(run), drawstyle="steps-post", **group.line(run))
+    if with_handles:
+        panels["handles"].axhline(0.0, color=style.MUTED, linewidth=1.0)
+        panels["handles"].set_ylabel("notch")
+        panels["handles"].yaxis.set_major_locator(MaxNLocator(4, integer=True))
+        caption += (
+            " Notch: of the throttle (positive) or the dynamic brake (negative), of the last command to any locomotive."
+        )
     for run in with_forces:
         forces = KN * run.recording.forces["coupler_force_n"]
         at = numpy.interp(run.recording.forces.time_s, run.recording.state.time_s, at_m[run])
