@@ -61,12 +61,12 @@ class StepInParts {
   void Bodies() {
     v1_ = v0_;
     SumForces();
-    Kick(*wagon_, force_, dt_, kCarbody, kWheelset1, v1_);
+    Kick(*wagon_, force_, dt_, kCarbody, kWheelset1, v0_, v1_);
     free_rate_ = ElementsOf(*wagon_, v1_);
     Wedges();
     BodyVector<T> friction_force;
     AddElementForces(*wagon_, friction_, friction_force);
-    Kick(*wagon_, friction_force, dt_, kFrontBolster, kWheelset1, v1_);
+    Kick(*wagon_, friction_force, dt_, kFrontBolster, kWheelset1, v1_, v1_);
   }
 
   void WholeStep() { StepWagon(*wagon_, *track_, loads_, dt_, s_, kNoOutput); }

@@ -201,7 +201,7 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
         unit.wedge[2 * bogie + end] = 1.0;
         BodyVector<double> force{}, change{};
         AddElementForces(w, unit, force);
-        Kick(w, force, kDt, kFrontBolster, kWheelset1, change);
+        Kick(w, force, kDt, kFrontBolster, kWheelset1, change, change);
         const ElementVector<double> rates = ElementsOf(w, change);
         response.col(end) << rates.wedge[2 * bogie], rates.wedge[2 * bogie + 1];
         const double spring =

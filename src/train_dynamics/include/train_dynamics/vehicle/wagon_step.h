@@ -133,14 +133,15 @@ std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
   return f;
 }
 
-/// Velocities after the forces have acted for dt on the bodies [begin, end).
+/// Velocities `v1` of the bodies [begin, end) after the forces have acted for dt on bodies of velocities `v0`. Both may be
+/// the same.
 template <class T, int kPerBogie>
 void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& force, double dt, int begin,
-          int end, BodyVector<T, kPerBogie>& v) {
+          int end, const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1) {
   for (int i = begin; i < end; ++i) {
-    v.x[i] = v.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
-    v.z[i] = v.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
-    v.pitch[i] = v.pitch[i] + (dt * w.inv_inertia_per_kgm2[i]) * force.pitch[i];
+    v1.x[i] = v0.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
+    v1.z[i] = v0.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
+    v1.pitch[i] = v0.pitch[i] + (dt * w.inv_inertia_per_kgm2[i]) * force.pitch[i];
   }
 }
 
@@ -375,8 +376,12 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
       }
     }
     const int frame = kFrontFrame + bogie;
-    const int hanger = reaction == BrakeReaction::kFrame ? frame : static_cast<int>(kCarbody);
-    force.pitch[hanger] = force.pitch[hanger] + r * shoes;
+    // Places known where it is compiled: an index that is not would keep all forces in memory.
+    if (reaction == BrakeReaction::kFrame) {
+      force.pitch[frame] = force.pitch[frame] + r * shoes;
+    } else {
+      force.pitch[kCarbody] = force.pitch[kCarbody] + r * shoes;
+    }
     force.pitch[frame] = force.pitch[frame] + r * others;
   }
 }
@@ -470,8 +475,8 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
 template <bool kAll, bool kReacts, class T, int kPerBogie>
 void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads,
                    double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
-  const BodyVector<T, kPerBogie> v0 = s.velocity;
-  BodyVector<T, kPerBogie>& v1 = s.velocity;
+  const BodyVector<T, kPerBogie>& v0 = s.velocity;
+  BodyVector<T, kPerBogie> v1;
   Drift(v0, 0.5 * dt, s.position);
 
   // Forces at the middle of the step.
@@ -491,12 +496,12 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   if (kReacts) AddReactions<kAll>(w, outer, wheelsets, force);
 
   // Carbody, bolsters and frames, then the wedges' friction on these.
-  Kick(w, force, dt, kCarbody, kWheelset1, v1);
+  Kick(w, force, dt, kCarbody, kWheelset1, v0, v1);
   ElementVector<T, kPerBogie> friction{};
   friction.wedge = WedgeFrictionForces(w, deflection.wedge, rate0.wedge, ElementsOf(w, v1).wedge, dt);
   BodyVector<T, kPerBogie> friction_force;
   AddElementForces(w, friction, friction_force);
-  Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1);
+  Kick(w, friction_force, dt, kFrontBolster, kWheelset1, v1, v1);
 
   if (output != nullptr) output->wedge_friction_n = friction.wedge;
 
@@ -509,6 +514,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
     s.creep_work[i] = s.creep_work[i] + wheelsets.creep[i];
     s.brake_work[i] = s.brake_work[i] + wheelsets.brake[i];
   }
+  s.velocity = v1;
 }
 
 template <class T, int kPerBogie>
