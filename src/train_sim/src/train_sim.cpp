@@ -1,8 +1,11 @@
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -54,6 +57,27 @@ const CLI::Validator kSeconds(
       return seconds && *seconds >= 0.0 ? "" : "must be a plain number of seconds >= 0, got '" + text + "'";
     },
     "s >= 0");
+
+/// A whole number. (CLI::Range says of 1e3 and 2.5 that they are not in range.)
+CLI::Validator Count(int least, int most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) {
+        const std::optional<double> number = strict_config::ParseNumber(text);
+        const bool is_whole = number && text.find_first_not_of("0123456789") == std::string::npos;
+        return is_whole && least <= *number && *number <= most
+                   ? ""
+                   : fmt::format("must be a whole number from {} to {} in digits, got '{}'", least, most,
+                                 text);
+      },
+      fmt::format("{} to {}", least, most));
+}
+
+/// A path. An empty one is that of a variable of the shell which is not set: nothing may be lost by that.
+const CLI::Validator kPath(
+    [](const std::string& text) {
+      return text.empty() ? "is empty: is a variable of the shell not set?" : "";
+    },
+    "");
 
 /// Options shared by the commands that read a file and change it.
 /// @return the file's option
@@ -108,9 +132,10 @@ int Main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "simulate a scenario; the summary goes to the standard output");
   AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
   run->add_option(
-      "--resume", options.resume,
-      "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
-      "--out: a what-if run from there");
+         "--resume", options.resume,
+         "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
+         "--out: a what-if run from there")
+      ->check(kPath);
   run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
                   "simulated time [s] between checkpoints in the folder of --out; 0: none")
       ->capture_default_str()
@@ -120,10 +145,11 @@ int Main(int argc, char** argv) {
   run->add_option("--model", options.model, "vehicle model; default: the scenario's")
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
   run->add_option("--out", options.out,
-                  "folder for train.bag, config.yaml and summary.json; default: write nothing");
+                  "folder for train.bag, config.yaml and summary.json; default: write nothing")
+      ->check(kPath);
   run->add_option("--threads", options.threads,
                   "threads; any number gives the same bits; default: one per core for 2d, one for ltd")
-      ->check(CLI::Range(1, 1024));
+      ->check(Count(1, 1024));
   run->add_flag("--csv", options.csv,
                 "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
   run->add_flag("--twin", options.twin,
@@ -148,13 +174,13 @@ int Main(int argc, char** argv) {
   AddInput(check, "SCENARIO", "scenario file", planned.scenario, planned.overrides);
   check->add_option("--model", planned.model, "vehicle model; default: the scenario's")
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
-  check->add_option("--out", planned.out, "folder for results: is there room for them?");
-  check->add_option("--threads", planned.threads, "as for run")->check(CLI::Range(1, 1024));
+  check->add_option("--out", planned.out, "folder for results: is there room for them?")->check(kPath);
+  check->add_option("--threads", planned.threads, "as for run")->check(Count(1, 1024));
   check->add_option("--nodes", planned.nodes, "wagon nodes of a distributed run: do they fit?")
-      ->check(CLI::Range(1, 100000));
+      ->check(Count(1, 100000));
   check->add_option("--machines", planned.machines, "machines like this one that share them")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
+      ->check(Count(1, 100000));
   check->add_flag("--json", planned.json, "print one JSON object for programs");
   check->callback([&] { command = [&] { return train_sim::CheckScenario(planned); }; });
 
@@ -179,26 +205,29 @@ int Main(int argc, char** argv) {
   std::string folder;
   CLI::App* start_folder = app.add_subcommand(
       "new", "start a folder of one's own with a train, a route, a scenario and a launch file that run");
-  start_folder->add_option("FOLDER", folder, "a new or an empty folder")->required();
+  start_folder->add_option("FOLDER", folder, "a new or an empty folder")->check(kPath)->required();
   start_folder->callback([&] { command = [&] { return train_sim::StartFolder(folder); }; });
 
   train_sim::RouteOptions route;
   CLI::App* show_route = app.add_subcommand(
       "route", "check a route - a track, a table of its points (CSV) or a scenario's - and draw it");
   AddInput(show_route, "FILE", "track, table or scenario", route.file, route.overrides);
-  show_route->add_option("--plot", route.plot, "draw it in this SVG file, over the position");
-  show_route->add_option("--csv", route.csv, "write it to this file as a table of points");
+  show_route->add_option("--plot", route.plot, "draw it in this SVG file, over the position")->check(kPath);
+  show_route->add_option("--csv", route.csv, "write it to this file as a table of points")->check(kPath);
   show_route->callback([&] { command = [&] { return train_sim::ShowRoute(route); }; });
 
   train_sim::VerifyOptions recording;
   CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");
   verify->add_option("DIR_OR_BAG", recording.recording, "folder of a run, or bag, also of rosbag record")
+      ->check(kPath)
       ->required();
-  verify->add_option("--config", recording.config,
-                     "scenario of the run; default: the folder's or the bag's own");
+  verify
+      ->add_option("--config", recording.config,
+                   "scenario of the run; default: the folder's or the bag's own")
+      ->check(kPath);
   verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several");
   verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")
-      ->check(CLI::Range(1, 1024));
+      ->check(Count(1, 1024));
   verify->callback([&] { command = [&] { return train_sim::Verify(recording); }; });
 
   CLI::App* modes =
@@ -225,8 +254,10 @@ int Main(int argc, char** argv) {
                    "random sequences of service commands, too, at each of 1, 2, 4 and 8 cells per vehicle: "
                    "no valve may "
                    "go into emergency")
-      ->check(CLI::Range(0, 1000000));
-  air_test->add_option("--seed", seed, "of the random sequences")->capture_default_str();
+      ->check(Count(0, 1000000));
+  air_test->add_option("--seed", seed, "of the random sequences")
+      ->check(Count(0, std::numeric_limits<int>::max()))
+      ->capture_default_str();
   air_test->callback(
       [&] { command = [&] { return train_sim::PrintAirTest(vehicle, options.overrides, trials, seed); }; });
 

@@ -504,8 +504,31 @@ class TrainSimTest(unittest.TestCase):
             done = train_sim(*arguments)
             self.assertEqual(2, done.returncode, arguments)
             self.assertNotEqual("", done.stderr, arguments)
+        for option, value in (("--threads", "1e3"), ("--threads", "2.5"), ("--threads", "-1"), ("--threads", "0x10")):
+            done = train_sim("run", EMERGENCY, option, value)
+            self.assertEqual(2, done.returncode)
+            self.assertIn(f"{option}: must be a whole number from 1 to 1024 in digits, got '{value}'", done.stderr)
+        done = train_sim("air-test", EMERGENCY, "--seed", "-5")
+        self.assertIn("--seed: must be a whole number from 0 to 2147483647 in digits, got '-5'", done.stderr)
         self.assertEqual(0, train_sim("--help").returncode)
         self.assertRegex(train_sim("--version").stdout, r"^train_sim \d+\.\d+\.\d+")
+
+    def test_an_empty_path_is_not_the_default(self):
+        """As of a variable of the shell that is not set: a run whose results are not written would be lost."""
+        for arguments in (
+            ["run", DIP, *SHORT, "--out", ""],
+            ["run", DIP, *SHORT, "--out="],
+            ["run", "--resume", ""],
+            ["check", DIP, "--out", ""],
+            ["verify", ""],
+            ["verify", self.out, "--config", ""],
+            ["route", DIP, "--plot", ""],
+            ["new", ""],
+        ):
+            done = train_sim(*arguments)
+            self.assertEqual(2, done.returncode, arguments)
+            self.assertEqual("", done.stdout, arguments)
+            self.assertRegex(done.stderr, "empty|missing", arguments)
 
     def test_the_scenario_is_never_overwritten(self):
         self.run_ok(DIP, "--out", self.out, *SHORT)
