@@ -496,7 +496,7 @@ TEST(Wire, EachLostRankIsGivenItsTime) {
     processes[i] = std::make_unique<WagonProcess>(names[i]);
   }
   RosTransportOptions options;
-  options.recovery_timeout_s = 4.0;
+  options.recovery_timeout_s = 10.0;
   RosTransport transport(ranks, NextRun(), scenario.params, options);
   TrainMaster master(scenario.params, scenario.consist, transport, scenario.pressures);
   master.Start();
@@ -504,7 +504,7 @@ TEST(Wire, EachLostRankIsGivenItsTime) {
   for (const auto& process : processes) process->Signal(SIGKILL);
   std::thread later([&] {  // the second one after more than the time-out of the first
     for (std::size_t i = 0; i < ranks.size(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5500));
       processes[i] = std::make_unique<WagonProcess>(names[i]);
     }
   });
