@@ -161,7 +161,7 @@ class LaunchTest(unittest.TestCase):
             subprocess.run(["kill", "-9", str(process)], stderr=subprocess.DEVNULL, check=False)
         self.master.kill()
 
-    def tool(self, *command, timeout_s=30):
+    def tool(self, *command, timeout_s=120):
         """The output of a command, to its end."""
         done = subprocess.run(
             command,

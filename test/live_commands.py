@@ -1,9 +1,13 @@
 #!/usr/bin/python3
 """Commands that are given to a running train: they take effect, are recorded, and the run is repeated to the same bits."""
 import json
+import os
 import pathlib
+import pty
 import random
+import re
 import subprocess
+import time
 
 import rosunit
 
@@ -11,11 +15,46 @@ from launches import Launch, LaunchTest, train_sim, wait_until
 
 HERE = pathlib.Path(__file__).resolve().parent
 SETTINGS = ["duration_s=8", "ledger_interval_s=1", "record_interval_s=0.02", "commands=[]", "initial_speed_kmh=30"]
+FREIGHT = HERE.parent / "config" / "scenarios" / "drive_and_stop.yaml"
+# What a joystick tells: at rest, half up, no stick and a button, a stick that is broken and the button again, at rest.
+STICK = """
+import rospy, time
+from sensor_msgs.msg import Joy
+rospy.init_node("joy")
+joy = rospy.Publisher("/train/joy", Joy, queue_size=10)
+while joy.get_num_connections() == 0: time.sleep(0.1)
+for axes, buttons in (([0, 0], [0, 0, 0]), ([0, 0.5], [0, 0, 0]), ([], [1]), ([0, 0.5], [0]), ([0, float("nan")], [1, 0, 0]),
+                      ([0, 0], [0, 0, 0]), ([0, 0], [0, 1, 0])):
+    joy.publish(Joy(axes=axes, buttons=buttons))
+    time.sleep(0.3)
+"""
+# A driver who does this and that at random times, and much that no train obeys.
+AT_RANDOM = """
+import random, rospy, sys, time
+from train_brake_msgs.msg import DriverCommand
+seed, nan = random.Random(int(sys.argv[1])), float("nan")
+rospy.init_node("driver", anonymous=True, disable_rostime=True)
+publisher = rospy.Publisher("/train/driver/command", DriverCommand, queue_size=100)
+while publisher.get_num_connections() == 0: time.sleep(0.05)
+SOUND = (lambda: dict(kind="throttle", notch=seed.randint(0, 8)),
+         lambda: dict(kind="apply", reduction_kpa=seed.uniform(50, 120)),
+         lambda: dict(kind="release"))
+WRONG = (dict(kind="apply", reduction_kpa=nan), dict(kind="throttle", notch=nan), dict(kind="throttle", notch=-1),
+         dict(kind="throttle", notch=1, vehicles=[99]), dict(kind="fly"), dict(kind="apply", reduction_kpa=9e9),
+         dict(kind="throttle", notch=1e400))
+for wrong in WRONG + WRONG:
+    time.sleep(seed.uniform(0, 0.4))
+    publisher.publish(DriverCommand(**seed.choice(SOUND)()))
+    publisher.publish(DriverCommand(**wrong))
+time.sleep(0.5)
+"""
 
 
 class LiveCommands(LaunchTest):
     def give(self, **command):
-        return self.tool("rosservice", "call", "/train/driver/give", json.dumps({"command": command}))
+        return self.tool(
+            "rosservice", "call", "/train/driver/give", json.dumps({"command": command}).replace("NaN", ".nan")
+        )
 
     def test_random_commands_are_repeated_to_the_same_bits(self):
         launch = Launch(
@@ -25,11 +64,10 @@ class LiveCommands(LaunchTest):
             f"scenario:={HERE / 'short_train.yaml'}",
             "vehicles:=6",
             "nodes:=2",
-            "real_time_factor:=1",
             "start_paused:=true",
             "set:=" + " ".join(SETTINGS),
         )
-        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 30), launch.log())
+        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
         seed = random.Random(20)
         refused = [
             self.give(kind="apply", reduction_kpa=5000.0),
@@ -49,7 +87,8 @@ class LiveCommands(LaunchTest):
             self.assertIn("success: False", reply)
             self.assertIn(words, reply)
         self.assertIn("success: True", self.give(kind="apply", reduction_kpa=round(seed.uniform(45, 60), 3)))
-        self.tool("rosservice", "call", "/train/master/resume")
+        step = lambda: self.tool("rosservice", "call", "/train/master/step", "1000")
+        self.assertIn("success: True", step())
         self.tool(
             "rostopic",
             "pub",
@@ -58,15 +97,17 @@ class LiveCommands(LaunchTest):
             "train_brake_msgs/DriverCommand",
             json.dumps({"kind": "apply", "reduction_kpa": round(seed.uniform(80, 100), 3)}),
         )
+        step()
         self.give(kind="emergency")
         self.give(kind="release")  # weaker: the emergency holds
+        self.tool("rosservice", "call", "/train/master/resume")
         self.assertEqual(0, launch.ended(120), launch.log())
         summary = launch.summary()
         self.assertEqual(
             ["apply", "apply", "emergency", "release"], [c["command"].split()[0] for c in summary["commands"]]
         )
         self.assertTrue(all(c["live"] for c in summary["commands"]))
-        self.assertEqual(0, summary["commands"][0]["exchange"])
+        self.assertEqual([0, 1000, 2000, 2000], [c["exchange"] for c in summary["commands"]])
 
         verified = subprocess.run(
             ["rosrun", "train_sim", "train_sim", "verify", str(launch.out)],
@@ -94,6 +135,84 @@ class LiveCommands(LaunchTest):
         without = train_sim(*[word for s in SETTINGS for word in ("--set", s)])
         self.assertNotEqual(summary["state_digest"], without["state_digest"])
         self.assertLess(summary["final_speed_kmh"]["mean"], without["final_speed_kmh"]["mean"])
+
+    def test_two_drivers_at_random_times_are_repeated_to_the_same_bits(self):
+        settings = ["commands=[]", "until=null", "duration_s=90", "exchange_interval_s=0.005", "initial_speed_kmh=20"]
+        launch = Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={FREIGHT}",
+            "vehicles:=11",
+            "model:=ltd",
+            "real_time_factor:=1",
+            "set:=" + " ".join(settings),
+        )
+        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
+        drivers = [
+            subprocess.Popen(["/usr/bin/python3", "-c", AT_RANDOM, seed], env=self.master.environment) for seed in "12"
+        ]
+        self.assertEqual([0, 0], [driver.wait(90) for driver in drivers])
+        self.assertIn("live_command_latency_max_exchanges", self.tool("rostopic", "echo", "-n1", "/diagnostics"))
+        self.tool("rosservice", "call", "/train/master/set_real_time_factor", "0")  # the rest as fast as possible
+        self.assertEqual(0, launch.ended(200), launch.log())
+        refusals = re.findall("a command on driver/command is refused: (.*)", launch.log())
+        self.assertEqual(28, len(refusals), launch.log())
+        for words in ("reduction_kpa must be", "notch must be >= 0, got nan", "got -1", "kind must be one of"):
+            self.assertTrue(any(words in refusal for refusal in refusals), f"{words}: {refusals}")
+        summary = launch.summary()
+        self.assertEqual(28, len(summary["commands"]))
+        self.assertGreater(len({c["exchange"] for c in summary["commands"]}), 10)
+        self.assertEqual(3, len({c["command"].split()[0] for c in summary["commands"]}))
+        verified = subprocess.run(
+            ["rosrun", "train_sim", "train_sim", "verify", str(launch.out)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.assertEqual(0, verified.returncode, verified.stdout)
+        self.assertIn(summary["state_digest"], verified.stdout)
+        self.assertEqual(summary["state_digest"], train_sim(scenario=launch.out / "replay.yaml")["state_digest"])
+
+    def test_keys_and_joystick_of_a_cab(self):
+        launch = Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={FREIGHT}",
+            "vehicles:=11",
+            "model:=ltd",
+            "real_time_factor:=1",
+            "set:=commands=[] until=null duration_s=600 exchange_interval_s=0.005",
+        )
+        terminal, end = pty.openpty()
+        cab = subprocess.Popen(
+            ["rosrun", "train_brake_examples", "cab_controls", "__ns:=/train"],
+            env=self.master.environment,
+            stdin=end,
+            stdout=subprocess.DEVNULL,
+        )
+        self.addCleanup(cab.kill)
+        press = lambda keys: os.write(terminal, keys.encode())
+        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
+        self.assertTrue(wait_until(lambda: "/train/cab_controls/get_loggers" in self.master.services(), 120))
+        time.sleep(3)  # until they are connected
+        press("wwws")
+        time.sleep(1.5)
+        self.assertIn("success: True", self.give(kind="throttle", notch=5.0))
+        time.sleep(1.5)
+        press("w")  # the lever has gone with the train
+        self.tool("/usr/bin/python3", "-c", STICK)
+        press(" ")
+        time.sleep(2)
+        press("q")
+        self.assertEqual(0, cab.wait(30))
+        time.sleep(1)
+        launch.interrupt()
+        self.assertEqual(130, launch.ended(60), launch.log())
+        expected = ["throttle 1", "throttle 2", "throttle 3", "throttle 2", "throttle 5", "throttle 6"]
+        expected += ["throttle 4", "apply 50 kPa", "apply 60 kPa", "throttle 0", "release", "emergency"]
+        self.assertEqual(expected, [c["command"] for c in launch.summary()["commands"]])
 
 
 if __name__ == "__main__":
