@@ -51,6 +51,10 @@ deps: ## install the missing Debian packages (tools/packages.txt)
 deps-rviz: deps ## ... and those that show a train in rviz (tools/packages_rviz.txt)
 	@tools/install_packages.sh packages_rviz.txt
 
+.PHONY: deps-test
+deps-test: deps-rviz ## ... and those that only the tests need (tools/packages_test.txt)
+	@tools/install_packages.sh packages_test.txt
+
 .PHONY: build
 build: deps ## build everything (Release) into build/ and devel/
 	@$(release) $(quietly)
@@ -71,12 +75,12 @@ paper: build ## all scenarios of the paper x three models; its tables and figure
 	@tools/paper.py devel/lib/train_sim/train_sim results/paper
 
 .PHONY: test
-test: check-deps deps-rviz build ## build and run all tests
+test: check-deps deps-test build ## build and run all tests
 	@$(release) tests $(quietly)
 	@$(call run_tests,build)
 
 .PHONY: test-sanitize
-test-sanitize: deps ## the same with the address and undefined-behaviour sanitizers, in build_sanitize/
+test-sanitize: deps-test ## the same with the address and undefined-behaviour sanitizers, in build_sanitize/
 	@$(sanitize) $(quietly)
 	@$(sanitize) tests $(quietly)
 	@$(call run_tests,build_sanitize,3000)
@@ -85,7 +89,7 @@ test-sanitize: deps ## the same with the address and undefined-behaviour sanitiz
 threaded = threaded_block_test|recorder_thread_test|run_control_test|shared_slots?_test|wagon_server_test|train_sim_test|resume_test|wire.test|distributed_train.test|unittest_faults|unittest_soak
 .PHONY: test-tsan
 test-tsan: export TSAN_OPTIONS = history_size=7 suppressions=$(CURDIR)/tools/thread_sanitizer.supp
-test-tsan: deps ## tests of everything with threads under the thread sanitizer, in build_tsan/
+test-tsan: deps-test ## tests of everything with threads under the thread sanitizer, in build_tsan/
 	@$(tsan) $(quietly)
 	@$(tsan) tests $(quietly)
 	@$(call run_tests,build_tsan,3000,$(threaded))
@@ -108,11 +112,11 @@ test-cluster: build ## a train over three machines (network namespaces with sshd
 # The same Python and ROS as in tests.
 in_workspace = . devel/setup.bash && PATH=/usr/bin:$$PATH
 .PHONY: test-faults
-test-faults: build ## every fault that a run has to survive, at every time of it; a few minutes (root: with full disks)
+test-faults: deps-test build ## every fault that a run has to survive, at every time of it; a few minutes (root: with full disks)
 	@$(in_workspace) test/faults.py --verbose
 
 .PHONY: test-docs-long
-test-docs-long: build ## every command of the pages, also the long ones, in a clean clone that they build (nightly)
+test-docs-long: deps-test build ## every command of the pages, also the long ones, in a clean clone that they build (nightly)
 	@PATH=/usr/bin:$$PATH test/docs_pages.py --long Commands
 
 ROUNDS ?= 100

@@ -17,6 +17,7 @@ import time
 import unittest
 from unittest import mock
 
+import matplotlib.text
 import numpy
 import rosbag
 import rosunit
@@ -370,18 +371,38 @@ class ReportTest(unittest.TestCase):
         )
         group = group_of(ltd(), later)
         self.assertEqual([(2, "ltd"), (3, "later")], [(command["time_s"], who) for command, _, who in group.commands()])
+        for scale, at_bottom in (("linear", False), ("linear", True), ("log", False), ("log", True)):
+            with self.subTest(scale=scale, at_bottom=at_bottom), style.applied():
+                axes = figure.new_canvas(4.0).subplots()
+                axes.plot([0, 10], [1, 1e6])
+                axes.set_yscale(scale)
+                axes.set_xlim(0, 10)
+                style.mark_commands(axes, group.commands(), at_bottom=at_bottom)
+                names = [text for text in axes.texts if "emergency" in text.get_text()]
+                axes.figure.draw_without_rendering()
+                bottom, top = axes.transData.transform([(0, 1), (0, 1e6)])[:, 1]  # of the curve
+                boxes = [text.get_window_extent() for text in names]
+                self.assertEqual(2, len(boxes))
+                self.assertTrue(all(box.y1 <= bottom if at_bottom else box.y0 >= top for box in boxes))
+                self.assertFalse(boxes[0].overlaps(boxes[1]))
+
+    def test_names_at_the_ends_of_lines_stay_beside_their_panel_and_apart(self):
         with style.applied():
             axes = figure.new_canvas(4.0).subplots()
-            axes.plot([0, 10], [0, 1])
-            axes.set_xlim(0, 10)
-            style.mark_commands(axes, group.commands())
-            names = [text for text in axes.texts if "emergency" in text.get_text()]
+            axes.semilogy([0, 1], [1, 1e6])
+            ends = [(10.0**k, f"line {k}", style.INK) for k in (0.0, 0.1, 5.8, 5.9, 6.0)]
+            axes.set_ylim(1, 1e6)
+            style.label_ends(axes, ends)
             axes.figure.draw_without_rendering()
-            top = axes.transData.transform((0, 1))[1]  # of the curve
-            boxes = [text.get_window_extent() for text in names]
-            self.assertEqual(2, len(boxes))
-            self.assertTrue(all(box.y0 >= top for box in boxes))
-            self.assertFalse(boxes[0].overlaps(boxes[1]))
+            boxes = sorted(
+                (matplotlib.text.Text.get_window_extent(text) for text in axes.texts), key=lambda box: box.y0
+            )
+            panel = axes.get_window_extent()
+            middles = [(box.y0 + box.y1) / 2 for box in boxes]
+            self.assertEqual(5, len(boxes))
+            self.assertLessEqual(middles[-1], panel.y1 + 1e-6)
+            self.assertTrue(all(below.y1 <= above.y0 + 0.5 for below, above in zip(boxes, boxes[1:])))
+            self.assertTrue(all(box.x0 > panel.x1 for box in boxes))
 
     def test_runs_of_unlike_trains_are_not_subtracted(self):
         page = self.page(ltd(), six_wagons())

@@ -34,6 +34,8 @@ def bag_of(given: pathlib.Path) -> pathlib.Path:
             return given / name
     below = sorted(folder.name for folder in given.iterdir() if (folder / BAGS[0]).exists())
     hint = f"; give one or more of its folders {', '.join(below)}" if below else ""
+    if (given / "study.json").exists():
+        hint = "; it is a study, whose table is results.csv; sweep --keep-records keeps bags, in runs/NUMBER/results"
     raise BagError(f"{given} holds no {BAGS[0]}{hint}")
 
 

@@ -11,7 +11,7 @@ from train_brake.presentable import presentable
 
 from train_brake_report.cards import Card
 from train_brake_report.contents import Item
-from train_brake_report.figure import Figure
+from train_brake_report.figure import Figure, Table
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -37,8 +37,10 @@ def _shown(value: object) -> object:
     return presentable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
 
 
-def _is_number(text: str) -> bool:
-    return re.fullmatch(r"[-+\u2212]?[\d.]*", text) is not None
+def _is_of_numbers(table: Table, column: int) -> bool:
+    """Whether a column is of numbers, hence aligned at the right: every cell of it that is not empty is one."""
+    cells = [str(row[column]) for row in table.rows]
+    return any(cells) and all(re.fullmatch(r"[-+\u2212]?[\d.]*", cell) for cell in cells)
 
 
 def render(title: str, cards: List[Card], sections: List[Section], made: str) -> str:
@@ -50,5 +52,5 @@ def render(title: str, cards: List[Card], sections: List[Section], made: str) ->
         undefined=jinja2.StrictUndefined,
         finalize=_shown,
     )
-    environment.filters["is_number"] = _is_number
+    environment.globals["is_of_numbers"] = _is_of_numbers
     return environment.get_template("page.html").render(title=title, cards=cards, sections=sections, made=made)

@@ -30,8 +30,9 @@ def _title(path: str) -> Tuple[str, float]:
     words = path
     for suffix in (".value", ".mean"):
         words = words[: -len(suffix)] if words.endswith(suffix) else words
-    factor = 1e-3 if unit == "N" else 1.0
-    return f"{words} [{'kN' if unit == 'N' else unit}]" if unit else words, factor
+    if unit == "N":  # the unit in the name would contradict that of the axis
+        return f"{words[:-2] if words.endswith('_n') else words} [kN]", 1e-3
+    return f"{words} [{unit}]" if unit else words, 1.0
 
 
 def default_results(rows: Rows) -> List[str]:
@@ -52,6 +53,12 @@ def _places(texts: Sequence[str]) -> Tuple[List[float], List[str]]:
         return numbers, []
     names = list(dict.fromkeys(texts))
     return [float(names.index(text)) for text in texts], [name or "as in the scenario" for name in names]
+
+
+def _width(line: int, lines: int) -> dict:
+    """The first lines are broad: where results agree, the others are seen upon them."""
+    more = max(0, min(lines, 4) - 1 - line)
+    return {"linewidth": 1.8 + 2.0 * more, "markersize": 5 + 3.0 * more}
 
 
 def _against(study: Study, rows: Rows, x: str, others: Sequence[str], result: str, drawn: Sequence[str]) -> Figure:
@@ -90,7 +97,7 @@ def _against(study: Study, rows: Rows, x: str, others: Sequence[str], result: st
                 [y for place in where for y in at[place]],
                 line,
                 color=colour,
-                markersize=5,
+                **_width(i, len(shown)),
                 label=label,
             )
     if names:

@@ -113,9 +113,9 @@ def legend_above(axes: Axes, columns: int = 4) -> None:
     )
 
 
-def legend_inside(axes: Axes) -> None:
-    """Where least is drawn."""
-    axes.legend(loc="best", ncol=2, borderaxespad=0.1, handlelength=2.2)
+def legend_beside_title(axes: Axes) -> None:
+    """Of a panel whose title stands above it at the left."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2, borderaxespad=0.1, handlelength=2.2)
 
 
 def label_ends(axes: Axes, ends) -> None:
@@ -124,10 +124,14 @@ def label_ends(axes: Axes, ends) -> None:
     axes.figure.draw_without_rendering()  # the panel's height is known only then
     apart = 1.25 * size * axes.figure.dpi / 72 / axes.get_window_extent().height
     low, high = numpy.log(axes.get_ylim())
-    place = -numpy.inf
-    for y, text, colour in sorted(ends):
-        exact = (numpy.log(y) - low) / (high - low)
-        place = max(exact, place + apart)
+    ends = sorted(ends)
+    exact = [(numpy.log(y) - low) / (high - low) for y, _, _ in ends]
+    places = exact[:]
+    for i in range(1, len(ends)):
+        places[i] = max(exact[i], places[i - 1] + apart)
+    for i in reversed(range(len(ends))):  # down again, where they would leave the panel
+        places[i] = min(places[i], (places[i + 1] if i + 1 < len(ends) else 1.0 + apart) - apart)
+    for (_, text, colour), exact, place in zip(ends, exact, places):
         axes.annotate(
             text,
             (1.0, exact),
@@ -166,7 +170,7 @@ def mark_commands(
     """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their names.
 
     marks: (command, colour, whose it is; empty: all runs'). Call it when all is drawn: the names get rows of their own, beyond
-    the curves (of a linear axis), and no two of them share a place."""
+    the curves, and no two of them share a place."""
     if len(marks) > MOST_COMMANDS:
         marks = [mark for mark in marks if "notch" not in mark[0]]
         named = named and len(marks) <= MOST_COMMANDS
@@ -194,9 +198,10 @@ def mark_commands(
         * (axes.get_subplotspec().get_position(canvas).height if axes.get_subplotspec() else 0.8)
     )
     share = min(0.4, (1.35 * size * len(ends) + 4) / height_pt)
-    low, high = axes.get_ylim()
+    scale = axes.yaxis.get_transform()
+    low, high = scale.transform(axes.get_ylim())
     room = (high - low) * share / (1 - share)
-    axes.set_ylim((low - room, high) if at_bottom else (low, high + room))
+    axes.set_ylim(*scale.inverted().transform((low - room, high) if at_bottom else (low, high + room)))
     for time_s, row, text, colour, is_late in placed:
         offset = (4 + 1.35 * size * row) if at_bottom else (-3 - 1.35 * size * row)
         axes.annotate(

@@ -65,7 +65,8 @@ def draw(group: Group) -> Figure:
             label=f"auxiliary reservoir, vehicle {vehicle}",
         )
     above.set_ylabel("pressure [kPa]")
-    above.margins(x=0)
+    for panel in (above, below):
+        panel.margins(x=0)
     style.legend_above(above, columns=3)
     with_cylinders = [r for r in group.runs if not lacks(r, "pressures")]
     told = []

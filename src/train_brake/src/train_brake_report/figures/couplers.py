@@ -50,10 +50,10 @@ def draw_largest(group: Group) -> Figure:
         axes.annotate(
             side,
             (1, 0.0),
-            (-4, offset),
+            (4, offset),
             xycoords=("axes fraction", "data"),
             textcoords="offset points",
-            ha="right",
+            ha="left",  # beside the panel: within it they would lie on curves
             va=align,
             color=style.MUTED,
         )
@@ -85,7 +85,7 @@ def draw_largest(group: Group) -> Figure:
                 **_marker(connections),
             )
         panel.set_ylabel("[kN]")
-        style.legend_inside(panel)
+        style.legend_beside_title(panel)
         mean, most, connection = compare_largest(largest[first], largest[run])
         caption += (
             f" {group.difference(run, first)}: {mean:.2f} kN on average in size, at most {minus(f'{most:+.1f}')} kN at "
@@ -143,7 +143,10 @@ def draw_history(group: Group) -> Figure:
     others, not_compared = group.comparable(runs, "forces", same_train=False)
     first = runs[0]
     canvas, axes, below = panels_with_differences(4.2, [group.difference(run, first) for run in others])
-    caption = f"Force of coupler {coupler}, tension positive (the paper's Figure 11 draws it negative)."
+    of_paper = coupler == paper.COUPLER and first.scenario == "emergency" and all(run.is_of_paper for run in runs)
+    caption = f"Force of coupler {coupler}, tension positive" + (
+        " (the paper's Figure 11 draws it negative)." if of_paper else "."
+    )
     history = {run: _forces_kn(run)[:, coupler - 1] for run in runs}
     for run in runs:
         table = run.recording.forces
@@ -153,7 +156,7 @@ def draw_history(group: Group) -> Figure:
             f" {run.label}: largest tension {minus(f'{history[run][most]:.1f}')} kN at {table.time_s[most]:.2f} s."
         )
     axes.axhline(0.0, color=style.MUTED, linewidth=1.0)
-    if coupler == paper.COUPLER and first.scenario == "emergency" and all(run.is_of_paper for run in runs):
+    if of_paper:
         for run in runs:
             if run.model in paper.COUPLER_TENSION_KN:
                 axes.plot(

@@ -252,7 +252,12 @@ def quantities(group: Group) -> Figure:
     return Figure(
         "engineering_numbers",
         "Engineering numbers",
-        "Percentiles count every record of every connection once. kJ per tonne and km refer to the whole train's mass.",
+        "Percentiles count every record of every connection once."
+        + (
+            " kJ per tonne and km refer to the whole train's mass."
+            if any("per tonne" in name for name in names)
+            else ""
+        ),
         table=Table(
             [""] + [run.label for run in group.runs],
             [[name] + [values[run].get(name, "") for run in group.runs] for name in names],
@@ -296,22 +301,17 @@ def consist_table(group: Group) -> Figure:
         ]
     )
     of = f" Of {run.label}." if len(group.runs) > 1 else ""
-    return Figure(
-        "consist",
-        "Consist",
-        f"From front to rear.{of}{not_shown}",
-        table=Table(
-            [
-                "vehicles",
-                "kind",
-                "count",
-                "model",
-                "mass of one [t]",
-                "of the group [t]",
-                "length of one [m]",
-                "of the group [m]",
-                "load fraction",
-            ],
-            rows,
-        ),
-    )
+    head = [
+        "vehicles",
+        "kind",
+        "count",
+        "model",
+        "mass of one [t]",
+        "of the group [t]",
+        "length of one [m]",
+        "of the group [m]",
+        "load fraction",
+    ]
+    if not any(row[-1] for row in rows):
+        head, rows = head[:-1], [row[:-1] for row in rows]
+    return Figure("consist", "Consist", f"From front to rear.{of}{not_shown}", table=Table(head, rows))

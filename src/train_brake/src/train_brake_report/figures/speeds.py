@@ -44,7 +44,7 @@ def draw(group: Group) -> Figure:
     style.mark_commands(axes, group.commands(), at_bottom=True)
     style.legend_above(axes)
 
-    caption = "Speed of the train: the mean of its momentum."
+    caption = "Mean speed of the train: its momentum over its mass."
     if first.vehicles > 1:
         apart = max(
             numpy.abs(KMH_PER_MPS * run.recording.state["speed_mps"] - run.mean_speed_kmh[:, None]).max()

@@ -1,13 +1,23 @@
 """Brake force on a shoe and on a wheel of one wagon (the paper's Figure 9)."""
 
+from typing import Tuple
+
 import numpy
 
-from train_brake_report import style
+from train_brake_report import consist, style
 from train_brake_report.figure import Figure, LeftOut, new_canvas
 from train_brake_report.group import Group, lacks
+from train_brake_report.run import Run
 
-WHEELS = 8  # of a wagon, one shoe each
 KN = 1e-3
+
+
+def _shoes_and_wheels(run: Run, vehicle: int) -> Tuple[int, int]:
+    """Of a vehicle of a run, from 1; without its configuration: those of a wagon of the paper."""
+    if run.config is None:
+        return 8, 8
+    shape = next(group["vehicle"] for first, last, group in consist.groups(run.config["train"]) if vehicle <= last)
+    return shape["brake_rigging"].get("shoes", 8), 2 * (shape.get("axles") or 2 * shape.get("wheelsets_per_bogie", 2))
 
 
 def draw(group: Group) -> Figure:
@@ -25,12 +35,14 @@ def draw(group: Group) -> Figure:
     axes = canvas.subplots()
     caption = (
         f"Tangential force on one brake shoe and longitudinal force of the rail on one wheel of wagon {group.wagon}, "
-        "backwards positive: an eighth of the wagon's."
+        "backwards positive."
     )
     with_wheels = []
     for run in runs:
         state = run.recording.state
-        shoe, wheel = (KN / WHEELS * state[field][:, group.wagon - 1] for field in ("shoe_force_n", "wheel_force_n"))
+        shoes, wheels = _shoes_and_wheels(run, group.wagon)
+        shoe = KN / shoes * state["shoe_force_n"][:, group.wagon - 1]
+        wheel = KN / wheels * state["wheel_force_n"][:, group.wagon - 1]
         known = numpy.isfinite(wheel)
         look = group.line(run)
         of_run = f", {run.label}" if len(runs) > 1 else ""
@@ -44,6 +56,10 @@ def draw(group: Group) -> Figure:
                 linewidth=1.5,
                 label="wheel" + of_run,
             )
+    numbers = sorted({_shoes_and_wheels(run, group.wagon) for run in runs})
+    caption += (
+        f" It has {' or '.join(f'{shoes} shoes on {wheels} wheels' for shoes, wheels in numbers)}, taken as equal."
+    )
     if with_wheels:
         caption += (
             " A steady wheel force is lower than the shoe force by the share that slows the rotation, and higher by "
