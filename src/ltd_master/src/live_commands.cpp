@@ -31,7 +31,12 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
 
 DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message,
                                   std::uint64_t exchange) const {
-  const DriverCommand command = train_results::CommandOf(message, exchange);
+  const DriverCommand command =
+      train_dynamics::WithVehicles({train_results::CommandOf(message, exchange)}, scenario_.train).front();
+  if (!command.group.empty()) {
+    throw std::invalid_argument("group " + train_dynamics::RuleOfGroup(command, scenario_.train) + ", got '" +
+                                command.group + "'");
+  }
   const std::string why_not = WhyNot(command, scenario_);
   if (!why_not.empty()) throw std::invalid_argument(why_not);
   return command;

@@ -224,6 +224,38 @@ TEST(HandBrake, HoldsAGradeInBothModels) {
   }
 }
 
+// Constant friction under a constant load, without resistance: F = F_0 (f + (1 - f) E / E_w) with dE = F dx, so that
+// E(x) = E_w f / (1 - f) (exp((1 - f) F_0 x / E_w) - 1), and all ice is gone after E_w ln(1 / f) / ((1 - f) F_0).
+TEST(IcyShoes, WarmUpAsTheClosedFormSays) {
+  VehicleParams p = OreWagon();
+  p.propulsion_resistance = {0.0, 0.0, 0.0};
+  p.brake_rigging.shoe_friction.law = ShoeFrictionLaw::kTable;
+  p.brake_rigging.shoe_friction.table = {{0.0}, {{20.0, {0.25}}}};
+  p.brake_rigging.shoe_friction.icy = IcyShoesParams{0.6, 1.5e6};
+  VehicleLoads<double> loads;
+  loads.cylinder_pressure_pa = 400e3;
+  const double force = 0.25 * 0.46035 * 400e3, all_j = 8.0 * 1.5e6;
+  const double gone_m = all_j * std::log(1.0 / 0.6) / (0.4 * force);
+  const auto energy_at = [&](double x) {
+    return x < gone_m ? all_j * 1.5 * (std::exp(0.4 * force * x / all_j) - 1.0)
+                      : all_j + force * (x - gone_m);
+  };
+  EXPECT_NEAR(energy_at(gone_m), all_j, 1e-6 * all_j);
+  const LtdVehicle vehicle(p, true);
+  LtdState<double> s;
+  s.v_mps = 80.0 / 3.6;
+  Ride ride(p, TrackParams(), 80.0 / 3.6);
+  ride.loads = loads;
+  for (const double x : {100.0, 200.0, gone_m, 500.0}) {
+    while (s.x_m < x) StepLtd(vehicle, {}, loads, 1e-3, s);
+    EXPECT_NEAR(s.work.dissipated[kBrakeShoes], energy_at(s.x_m), 1e-4 * energy_at(x)) << x;  // steps
+    while (ride.Distance() < x) ride.Step(1e-3);
+    // Creep: the tread goes a little less far than the vehicle.
+    EXPECT_NEAR(ride.state.work.dissipated[kBrakeShoes], energy_at(ride.Distance()), 3e-3 * energy_at(x))
+        << x;
+  }
+}
+
 // Composition shoes in the 2D model: the stop of the LTD vehicle with the same rigging.
 TEST(ShoeFrictionLaw, TwoDimensionalStopIsThatOfLtd) {
   VehicleParams p = OreWagon();

@@ -341,6 +341,28 @@ TEST(GroupNames, OfCommandsMeanTheirLocomotives) {
       << error;
 }
 
+// The brakes of locomotives act on vehicles that are locomotives without traction, too; throttles do not.
+TEST(GroupNames, OfLocomotiveBrakesMeanLocomotivesWithoutTraction) {
+  const std::string train =
+      "train={name: hauled, connection: mt2, consist: [{vehicle: c44ac, name: lead}, {vehicle: hopper, "
+      "count: "
+      "3}, {vehicle: ore_wagon_loaded, count: 2, name: dead, locomotive: true, model: ltd}]}";
+  const auto commands = [](const std::string& kind, const std::string& who) {
+    return "commands=[{time_s: 1, kind: " + kind + ", " + who + "}]";
+  };
+  const std::vector<std::string> common = {train, "duration_s=20", "initial_speed_kmh=20"};
+  const auto trip_of = [&](const std::string& who) {
+    std::vector<std::string> set = common;
+    set.push_back(commands("independent_brake, pressure_kpa: 200", who));
+    return TripOf(set);
+  };
+  EXPECT_EQ(trip_of("group: dead").digest, trip_of("vehicles: [5, 6]").digest);
+  EXPECT_NE(trip_of("group: dead").digest, trip_of("group: lead").digest);
+  const std::string error = ErrorsOf({train, commands("throttle, notch: 4", "group: dead")});
+  EXPECT_NE(error.find("must be the name of a group of locomotives of the train: lead"), std::string::npos)
+      << error;
+}
+
 TEST(StartStates, TheBrakeHasItsPressureAndHoldsTheTrainOnAGrade) {
   const std::vector<std::string> grade = {"track={name: down, grades: [{from_m: -1000, grade_percent: -1}]}",
                                           "duration_s=60"};

@@ -205,7 +205,12 @@ train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& m
       throw std::invalid_argument(fmt::format("pressure_kpa must be >= 0, got {}", message.pressure_kpa));
     command.pressure_kpa = message.pressure_kpa;
   }
-  if (!command.IsOfTrainBrake()) command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
+  if (!command.IsOfTrainBrake()) {
+    command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
+    command.group = message.group;
+    if (!command.group.empty() && !command.vehicles.empty())
+      throw std::invalid_argument("group must not stand beside vehicles");
+  }
   return command;
 }
 

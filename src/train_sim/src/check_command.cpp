@@ -69,6 +69,14 @@ std::string TwoDigits(double value) {
   return value < 100.0 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
 
+/// Its name, and where it is known.
+std::string TrackText(const train_dynamics::TrackParams& track) {
+  const train_dynamics::Stretch known = track.Extent();
+  const std::string name = track.name.empty() ? "without a name" : track.name;
+  if (!std::isfinite(known.from_m) || !std::isfinite(known.to_m)) return name;
+  return fmt::format("{}, {:.3f} km to {:.3f} km", name, 1e-3 * known.from_m, 1e-3 * known.to_m);
+}
+
 void PrintScenario(const LoadedScenario& scenario) {
   const ScenarioParams& p = scenario.params;
   const train_dynamics::Consist& consist = scenario.consist;
@@ -82,14 +90,14 @@ void PrintScenario(const LoadedScenario& scenario) {
         return consist.connection_types[type].kind == train_dynamics::ConnectionKind::kDrawBar;
       });
   const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
-  train_console::Print("{}: {}\n", p.name, p.description);
+  train_console::Print("{}{}{}\n", p.name, p.description.empty() ? "" : ": ", p.description);
   Line("model", "{}", p.ModelNames());
   Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name,
        consist.vehicles(), 1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars,
        draw_bars);
   for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(p.train))
     Line("external", "{}, moved by the node {}", VehiclesText(rank), rank.name);
-  Line("track", "{}", p.track.name);
+  Line("track", "{}", TrackText(p.track));
   if (p.pressure_table.empty()) {
     Line("pressures", "{}, {} driver command(s)", p.brake->name, p.commands.size());
   } else {

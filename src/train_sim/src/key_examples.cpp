@@ -49,6 +49,7 @@ const std::pair<const char*, const char*> kMade[] = {
     {"cylinder.efficiency", "0.9"},
     {"net_braking_ratio.ratio", "0.11"},
     {"net_braking_ratio.at_pressure_kpa", "345"},
+    {"breakaway.constant_n_per_kn", "5"},
     {"load_sensing.full_mass_kg", "120000"},
     {"load_sensing.changeover_mass_kg", "60000"},
     {"shoe_friction.table.speed_kmh", "[0, 40, 100]"},

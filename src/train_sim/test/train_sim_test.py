@@ -287,6 +287,11 @@ class TrainSimTest(unittest.TestCase):
             done.stderr,
         )
         self.assertEqual(1, len([line for line in done.stderr.splitlines() if "vehicle_" in line]), done.stderr)
+        table.write_text("time_s,vehicle_1_kpa,note\n0,0,1\n")
+        self.assertIn(
+            "table.csv:1: has no column vehicle_1_pa: of 1 vehicles 1 have no pressures; not used: vehicle_1_kpa, note",
+            train_sim("check", DIP, "--set", f"pressure_table={table}").stderr,
+        )
         table.write_text("time_s,vehicle_1_pa\n0,0\n2,5\n1,-7\n1,4e8\n")
         errors = train_sim("check", DIP, "--set", f"pressure_table={table}").stderr
         for text in (
@@ -414,6 +419,14 @@ class TrainSimTest(unittest.TestCase):
         lines = {line[2:12].strip(): line[13:] for line in done.stdout.splitlines()[1:]}
         self.assertEqual(done.stdout.splitlines()[1:], ["  %-10s %s" % line for line in lines.items()])  # aligned
         return lines, done.stderr
+
+    def test_check_tells_where_a_route_is_known(self):
+        line = self.write("my_line.csv", "position_km,grade_permille\n-2.5,0\n0,3\n40,0\n")
+        self.assertIn("  track      without a name, -2.500 km to 40.000 km\n", self.told(EMERGENCY, line))
+        self.assertIn("  track      level\n", self.told(EMERGENCY, "level"))
+
+    def told(self, scenario, track):
+        return train_sim("check", scenario, "--model", "ltd", "--set", f"track={track}").stdout
 
     def test_check_predicts_the_bag(self):
         """The size of the real bag within 1 %, short runs with their descriptions of topics within 2 %."""

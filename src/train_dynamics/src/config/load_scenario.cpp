@@ -55,6 +55,17 @@ void ThrowIfAny(const ErrorList& errors) {
 
 std::string PressureColumn(int vehicle) { return "vehicle_" + std::to_string(vehicle) + "_pa"; }
 
+/// The columns of a table of pressures that a train of so many vehicles does not use.
+std::vector<std::string> UnusedColumns(const CsvTable& table, int vehicles) {
+  std::set<std::string> used = {"time_s"};
+  for (int i = 1; i <= vehicles; ++i) used.insert(PressureColumn(i));
+  std::vector<std::string> unused;
+  for (const std::string& name : table.columns) {
+    if (used.count(name) == 0) unused.push_back(name);
+  }
+  return unused;
+}
+
 /// Warns where a table of pressures and the run do not cover each other.
 void WarnOfCover(const CsvTable& table, const std::vector<double>& time_s, int vehicles, double duration_s,
                  std::vector<std::string>& warnings) {
@@ -68,10 +79,7 @@ void WarnOfCover(const CsvTable& table, const std::vector<double>& time_s, int v
     warn("ends at " + ShortestDecimal(time_s.back()) + " s of " + ShortestDecimal(duration_s) +
          " s: from then on the pressures of its last row hold");
   }
-  std::set<std::string> used = {"time_s"};
-  for (int i = 1; i <= vehicles; ++i) used.insert(PressureColumn(i));
-  const auto unused = std::count_if(table.columns.begin(), table.columns.end(),
-                                    [&](const std::string& name) { return used.count(name) == 0; });
+  const std::size_t unused = UnusedColumns(table, vehicles).size();
   if (unused > 0) {
     warn(std::to_string(unused) + " of its columns are not used: the train has " + std::to_string(vehicles) +
          (vehicles == 1 ? " vehicle" : " vehicles"));
@@ -99,10 +107,12 @@ BrakeSystem ReadPressureTable(const std::string& file, int vehicles, double dura
   }
   if (!missing.empty()) {
     constexpr std::size_t kListed = 3;
+    const std::vector<std::string> others = UnusedColumns(table, vehicles);
     errors.Add(table.file, table.header_line, "",
                "has no column" + std::string(missing.size() == 1 ? " " : "s ") +
                    strict_config::Join(missing, kListed) + ": of " + std::to_string(vehicles) + " vehicles " +
-                   std::to_string(missing.size()) + " have no pressures");
+                   std::to_string(missing.size()) + " have no pressures" +
+                   (others.empty() ? "" : "; not used: " + strict_config::Join(others, kListed)));
   }
   ThrowIfAny(errors);
   const auto complain = [&](std::size_t row, const std::string& key, double value, const std::string& rule) {

@@ -49,4 +49,16 @@ ResistanceCoefficients CoefficientsOf(const PropulsionResistanceParams& p, doubl
   }
 }
 
+double BreakawayResistance(const BreakawayParams& p, double mass_kg, int axles) {
+  const double weight_kn = 1e-3 * kGravity * mass_kg, axle_t = 1e-3 * mass_kg / axles;
+  switch (p.law) {
+    case BreakawayLaw::kRollerBearings:
+      return weight_kn * 28.0 / (axle_t + 7.0);
+    case BreakawayLaw::kPlainBearings:
+      return weight_kn * 142.0 / (axle_t + 7.0);
+    default:
+      return weight_kn * p.constant_n_per_kn;
+  }
+}
+
 }  // namespace train_dynamics

@@ -37,13 +37,18 @@ std::string DriverCommand::Text() const {
   return IsOfLocomotives() ? name + " " + ShortestDecimal(notch) : name;
 }
 
+bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group) {
+  if (command.IsOfTrainBrake()) return false;
+  return group.vehicle.traction || (group.locomotive && command.IsOfLocomotiveBrakes());
+}
+
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train) {
   for (DriverCommand& command : commands) {
     if (command.group.empty()) continue;
     int first = 1;
     for (const ConsistGroupParams& group : train.consist) {
-      for (int i = 0; group.name == command.group && group.vehicle.traction && i < group.count; ++i)
-        command.vehicles.push_back(first + i);
+      const bool obeys = group.name == command.group && ActsOn(command, group);
+      for (int i = 0; obeys && i < group.count; ++i) command.vehicles.push_back(first + i);
       first += group.count;
     }
     if (!command.vehicles.empty()) command.group.clear();

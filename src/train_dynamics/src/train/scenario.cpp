@@ -19,18 +19,17 @@ std::string KnownNames(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The names of the groups that have locomotives, each once.
-std::vector<std::string> LocomotiveGroups(const TrainParams& train) {
+}  // namespace
+
+std::string RuleOfGroup(const DriverCommand& command, const TrainParams& train) {
   std::vector<std::string> names;
   for (const ConsistGroupParams& group : train.consist) {
-    if (group.vehicle.traction && !group.name.empty() &&
+    if (ActsOn(command, group) && !group.name.empty() &&
         std::find(names.begin(), names.end(), group.name) == names.end())
       names.push_back(group.name);
   }
-  return names;
+  return "must be the name of a group of locomotives of the train" + KnownNames(names);
 }
-
-}  // namespace
 
 int ScenarioParams::StepsPerExchange() const { return static_cast<int>(Parts(exchange_interval_s, dt_s)); }
 long ScenarioParams::Exchanges() const { return Parts(duration_s, exchange_interval_s); }
@@ -135,10 +134,7 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].IsOfTrainBrake()) continue;
     if (!named[i].group.empty()) {
-      broken.push_back(
-          {"commands" + ListIndex(i) + ".group",
-           "must be the name of a group of locomotives of the train" + KnownNames(LocomotiveGroups(train)),
-           {"train"}});
+      broken.push_back({"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {"train"}});
       continue;
     }
     if (commands[i].IsOfLocomotiveBrakes() && brake) {

@@ -11,7 +11,7 @@ namespace {
 
 // Each rises when the fields or their meaning change; in all versions of a train's checkpoint the scenario comes first.
 constexpr std::uint64_t kBlockFormat = 3;
-constexpr std::uint64_t kTrainFormat = 6;
+constexpr std::uint64_t kTrainFormat = 7;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 /// That of checkpoints before format 6.
@@ -137,6 +137,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
   writer.Add(checkpoint.connections);
   writer.Add(checkpoint.brake);
   writer.Add(checkpoint.locomotives);
+  writer.Add(checkpoint.breakaway);
   writer.Add(checkpoint.driver);
   writer.Add(checkpoint.built_in_driver);
   writer.Add(checkpoint.summary);
@@ -163,6 +164,7 @@ TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   checkpoint.connections = reader.Numbers();
   checkpoint.brake = reader.Numbers();
   checkpoint.locomotives = reader.Numbers();
+  checkpoint.breakaway = reader.Numbers();
   checkpoint.driver = reader.Numbers();
   checkpoint.built_in_driver = reader.Numbers();
   checkpoint.summary = reader.Numbers();

@@ -31,6 +31,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
               ExternalVehicles(scenario)),
       locomotives_(consist, TimedLocomotiveCommands(WithVehicles(scenario.commands, scenario.train))),
       curves_(scenario.track, consist, scenario.start_position_m),
+      breakaway_(consist),
       reply_(consist.vehicles(), scenario.DetailedVehicles()),
       schedule_(WithVehicles(scenario.commands, scenario.train), scenario.until) {
   record_.vehicles = reply_;
@@ -76,6 +77,9 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
   brake.End();
+  MemoryReader breakaway(checkpoint.breakaway);
+  breakaway_.ForEachField(breakaway);
+  breakaway.End();
   MemoryReader locomotives(checkpoint.locomotives);
   locomotives_.ForEachField(locomotives);
   locomotives.End();
@@ -105,6 +109,9 @@ TrainCheckpoint TrainMaster::Checkpoint() const {
   MemoryWriter locomotives;
   Locomotives(locomotives_).ForEachField(locomotives);
   checkpoint.locomotives = locomotives.Take();
+  MemoryWriter breakaway;
+  BreakawayLoads(breakaway_).ForEachField(breakaway);
+  checkpoint.breakaway = breakaway.Take();
   checkpoint.driver = schedule_.Memory();
   MemoryWriter driver;
   if (driver_) BuiltInDriverState(driver_->state).ForEachField(driver);
@@ -123,6 +130,7 @@ void TrainMaster::Exchange() {
 
   curves_.Evaluate(scenario_.exchange_interval_s, reply_.head_displacement_m, reply_.head_velocity_mps,
                    request_);
+  breakaway_.Evaluate(reply_.head_displacement_m, reply_.head_velocity_mps, request_);
 
   const std::uint64_t next = exchange_ + 1;
   request_.exchange = exchange_;
@@ -247,6 +255,7 @@ void TrainMaster::ShowRecord() {
   forces_.AddMemoryTo(digest);
   brake_.ForEachField(MemoryDigest(digest));
   locomotives_.ForEachField(MemoryDigest(digest));
+  breakaway_.ForEachField(MemoryDigest(digest));
   if (driver_) driver_->state.ForEachField(MemoryDigest(digest));
   digest_ = digest.value();
 

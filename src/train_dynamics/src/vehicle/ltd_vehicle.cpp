@@ -10,6 +10,7 @@ LtdVehicle::LtdVehicle(const VehicleParams& params, bool with_rotational_inertia
       propulsion_resistance(params.Resistance()),
       weight_n(params.Weight()),
       inertia_kg(params.TotalMass() + (with_rotational_inertia ? EquivalentRotationalMass(params) : 0.0)),
+      per_wheel(0.5 / params.Wheelsets()),
       integrator(method),
       adhesion_limit(knows_adhesion_limit && !params.IsOneMass()),
       adhesion(params.wheel_rail.adhesion),

@@ -60,6 +60,28 @@ struct ShoeFrictionTableParams {
   }
 };
 
+/// Shoes with ice on them: their friction has the factor  min(1, f + (1 - f) E / E_w),  E the energy that the shoes of the
+/// vehicle have taken up since the start of the run, over its wheels. [A] Left out: ice that comes again; the difference
+/// between wheels.
+struct IcyShoesParams {
+  double initial_factor = 0.7;
+  double energy_per_wheel_j = 2e6;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("initial_factor", initial_factor, Range{0.0, 1.0, true, false},
+             "f, factor on the friction of shoes that have not braked yet [A]");
+    v.Number("energy_per_wheel_j", energy_per_wheel_j, kPositive,
+             "E_w, energy of the shoes of one wheel after which the factor is 1 [A]");
+  }
+};
+
+/// The factor on the friction of icy shoes [-]. @param energy_j  E of one wheel, >= 0
+template <class T>
+T IcyFactor(const IcyShoesParams& p, T energy_j) {
+  return Min(T(1.0), p.initial_factor + ((1.0 - p.initial_factor) / p.energy_per_wheel_j) * energy_j);
+}
+
 /// Coefficient of friction between brake shoe and wheel tread.
 struct ShoeFrictionParams {
   double standstill_friction_coefficient = kRequired;
@@ -68,6 +90,7 @@ struct ShoeFrictionParams {
   double shoe_temperature_c = 20.0;
   ShoeFrictionTableParams table;
   double wet_factor = 1.0;
+  std::optional<IcyShoesParams> icy = {};
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -91,6 +114,7 @@ struct ShoeFrictionParams {
       v.Group("table", table, "measured friction over speed and shoe force");
     v.Number("wet_factor", wet_factor, Range{0.0, 1.0, true, false},
              "factor on the friction of every law: 1 dry; wet composition shoes 0.8 [A]");
+    v.Group("icy", icy, "shoes with ice on them, which brake less until it is gone; not given: none");
   }
 };
 
@@ -310,7 +334,7 @@ struct BrakeRigging {
         efficiency(p.cylinder.efficiency.value_or(0.0)),
         hand_brake_n(p.hand_brake_ratio * weight_n),
         is_plain(p.shoe_load != ShoeLoadForm::kCylinder && p.shoe_friction.law == ShoeFrictionLaw::kEq3 &&
-                 p.shoe_friction.wet_factor == 1.0 && p.hand_brake_ratio == 0.0) {
+                 p.shoe_friction.wet_factor == 1.0 && !p.shoe_friction.icy && p.hand_brake_ratio == 0.0) {
     if (p.shoe_load == ShoeLoadForm::kNetBrakingRatio) {
       load_per_pressure_n_per_pa =
           p.net_braking_ratio.ratio * weight_n / (1e3 * p.net_braking_ratio.at_pressure_kpa);
@@ -323,7 +347,7 @@ struct BrakeRigging {
   double load_per_pressure_n_per_pa;  ///< C, load share included; not of the form kCylinder
   double efficiency;                  ///< of the form kCylinder; 0: TosRiggingEfficiency
   double hand_brake_n;                ///< constant friction force of all shoes
-  bool is_plain;                      ///< C p by Eq 3, without hand brake
+  bool is_plain;                      ///< C p by Eq 3, without hand brake, ice, water
 };
 
 /// Normal load of all shoes of a vehicle [N], >= 0.

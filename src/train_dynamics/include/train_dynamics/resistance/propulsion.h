@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/parameters.h"
 
@@ -64,6 +66,38 @@ struct StrahlParams {
   }
 };
 
+enum class BreakawayLaw {
+  kRollerBearings,  ///< 28 / (q0 + 7) [M]
+  kPlainBearings,   ///< 142 / (q0 + 7) [M]
+  kConstant
+};
+
+/// What a vehicle's bearings resist at least while it starts, in newtons per kilonewton; q0 tonnes per axle:
+///
+///   roller_bearings 28 / (q0 + 7),  plain_bearings 142 / (q0 + 7)   (Russian traction rules [M]),  constant: as given.
+///
+/// It holds from standstill until the vehicle has moved `distance_m` [A], in place of a + b k where that is less. Left out:
+/// how long the vehicle has stood, and temperature.
+struct BreakawayParams {
+  BreakawayLaw law = BreakawayLaw::kRollerBearings;
+  double constant_n_per_kn = kRequired;
+  double distance_m = 1.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Choice(
+        "law", law,
+        {{"roller_bearings", BreakawayLaw::kRollerBearings},
+         {"plain_bearings", BreakawayLaw::kPlainBearings},
+         {"constant", BreakawayLaw::kConstant}},
+        "roller_bearings: 28 / (q0 + 7) N/kN with q0 tonnes per axle; plain_bearings: 142 / (q0 + 7) [M]");
+    if (law == BreakawayLaw::kConstant)
+      v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative, "of the law constant, per weight");
+    v.Number("distance_m", distance_m, kPositive,
+             "that the vehicle moves from standstill until it has started");
+  }
+};
+
 /// The law of a vehicle's propulsion resistance and its parameters. `abc` is the paper's Eq 5.
 ///
 /// `szd` has none: with q0 tonnes per axle, 0.7 + (3 + 0.1 k + 0.0025 k^2) / q0 newtons per kilonewton above 6 t, else
@@ -76,6 +110,7 @@ struct PropulsionResistanceParams {
   CnResistanceParams cn = {};
   ModifiedDavisParams modified_davis = {};
   StrahlParams strahl = {};
+  std::optional<BreakawayParams> breakaway = {};
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -97,6 +132,7 @@ struct PropulsionResistanceParams {
     if (law == PropulsionResistanceLaw::kModifiedDavis)
       v.Group("modified_davis", modified_davis, "parameters of the law modified_davis");
     if (law == PropulsionResistanceLaw::kStrahl) v.Group("strahl", strahl, "parameters of the law strahl");
+    v.Group("breakaway", breakaway, "resistance of bearings while the vehicle starts; not given: none");
   }
 };
 
@@ -104,6 +140,9 @@ struct PropulsionResistanceParams {
 /// @param mass_kg  of the whole vehicle, > 0
 /// @param axles    > 0
 ResistanceCoefficients CoefficientsOf(const PropulsionResistanceParams& p, double mass_kg, int axles);
+
+/// Resistance of a vehicle's bearings while it starts [N], >= 0; opposes motion, set-valued at rest. Arguments as above.
+double BreakawayResistance(const BreakawayParams& p, double mass_kg, int axles);
 
 /// Resistance that arises at wheels and bearings [N], even in the speed; opposes motion, set-valued at rest.
 ///

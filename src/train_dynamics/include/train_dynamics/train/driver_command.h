@@ -118,6 +118,10 @@ struct DriverCommand {
   std::string Text() const;
 };
 
+/// Whether a command of locomotives acts on the vehicles of a group: throttle and dynamic brake on those with traction, the
+/// brakes of locomotives on all locomotives.
+bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group);
+
 /// The same commands with the numbers of the locomotives of their group, where they name one that has some.
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train);
 /// Those with a time, for the train's brake, in the order of the list.

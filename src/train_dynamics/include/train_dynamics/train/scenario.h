@@ -128,6 +128,9 @@ struct ScenarioParams {
   void JudgeSlideProtection(std::vector<BrokenRule>& broken) const;
 };
 
+/// What the group of a command of locomotives must be, as a rule, with the names that there are.
+std::string RuleOfGroup(const DriverCommand& command, const TrainParams& train);
+
 /// The brake system of a scenario that must have one.
 /// @throws std::invalid_argument if it does not suit the train
 BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist);

@@ -37,6 +37,7 @@ struct TrainCheckpoint {
   std::vector<double> connections;      ///< InTrainForces::Memory
   std::vector<double> brake;            ///< BrakeSystem::ForEachField
   std::vector<double> locomotives;      ///< Locomotives::ForEachField
+  std::vector<double> breakaway;        ///< BreakawayLoads::ForEachField
   std::vector<double> driver;           ///< CommandSchedule::Memory
   std::vector<double> built_in_driver;  ///< BuiltInDriverState::ForEachField; empty without one
   std::vector<double> summary;          ///< RunSummary::Memory

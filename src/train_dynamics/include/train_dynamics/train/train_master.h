@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "train_dynamics/brake/brake_system.h"
+#include "train_dynamics/train/breakaway_loads.h"
 #include "train_dynamics/train/built_in_driver.h"
 #include "train_dynamics/train/command_schedule.h"
 #include "train_dynamics/train/curving_loads.h"
@@ -122,6 +123,7 @@ class TrainMaster {
   InTrainForces forces_;
   Locomotives locomotives_;
   CurvingLoads curves_;
+  BreakawayLoads breakaway_;
   bool can_part_ = false;
   std::size_t opened_pipes_ = 0;
   std::uint64_t exchange_ = 0, first_exchange_ = 0;

@@ -70,6 +70,7 @@ struct LtdVehicle {
   ResistanceCoefficients propulsion_resistance;
   double weight_n;    ///< m g
   double inertia_kg;  ///< m, or m + m_e
+  double per_wheel;   ///< 1 / number of wheels
   LtdIntegrator integrator;
   bool adhesion_limit;      ///< whether the rail limits the forces at the wheels
   AdhesionParams adhesion;  ///< of the rail outside of patches
@@ -152,6 +153,12 @@ void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoa
   T shoes = kAll ? ShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0)
                  : PlainShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
   T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
+  if (kAll && vehicle.brake_rigging.params.shoe_friction.icy) {
+    shoes = IcyFactor(*vehicle.brake_rigging.params.shoe_friction.icy,
+                      vehicle.per_wheel * s.work.dissipated[kBrakeShoes]) *
+            shoes;
+  }
+  if (kAll) rolling = Max(rolling, loads.breakaway_resistance_n);
   T dynamic_brake = loads.dynamic_brake_n, traction = loads.traction_n;
   const T curving = loads.curving_resistance_n;  // at the flanges: it takes nothing of the adhesion
   if (kAll && vehicle.adhesion_limit) {

@@ -15,7 +15,8 @@
   X(cylinder_pressure_pa, "Pa", kAlways, "of the air brake; above the atmosphere, >= 0") \
   X(traction_n, "N", kWhereUsed, "at the wheel rims; forward positive")                  \
   X(dynamic_brake_n, "N", kWhereUsed, "at the wheel rims, >= 0; opposes the rotation")   \
-  X(curving_resistance_n, "N", kWhereUsed, ">= 0; opposes the motion")
+  X(curving_resistance_n, "N", kWhereUsed, ">= 0; opposes the motion")                   \
+  X(breakaway_resistance_n, "N", kWhereUsed, ">= 0; of bearings at least, while starting")
 
 namespace train_dynamics {
 

@@ -158,11 +158,12 @@ struct OuterForces {
   T dynamic_brake;      ///< largest at one driven wheelset [N], >= 0
   T traction;           ///< at one driven wheelset, forward positive [N]
   T cylinder_pressure;  ///< [Pa]
+  T icy_factor;         ///< on the shoes' friction [-]; of vehicles whose shoes are not plain
   const std::array<T, kMostWheelsets>*wheelset_pressure, *traction_share;  ///< see VehicleLoads
 };
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
-template <class T, int kPerBogie>
+template <bool kAll, class T, int kPerBogie>
 OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& track,
                              const VehicleLoads<T>& loads, const WagonState<T, kPerBogie>& s) {
   const VehicleParams& p = w.params;
@@ -178,10 +179,16 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& trac
     outer.shoes = kShare * ShoeForce(w.rigging, loads.cylinder_pressure_pa, speed);
   }
   outer.rolling = kShare * RollingResistance(w.resistance, w.weight_n, speed);
+  if (kAll) outer.rolling = Max(outer.rolling, kShare * loads.breakaway_resistance_n);
   outer.curving = kShare * loads.curving_resistance_n;
   outer.dynamic_brake = w.driven_share * loads.dynamic_brake_n;
   outer.traction = w.driven_share * loads.traction_n;
   outer.cylinder_pressure = loads.cylinder_pressure_pa;
+  outer.icy_factor = T(1.0);
+  if (kAll && p.brake_rigging.shoe_friction.icy) {
+    outer.icy_factor =
+        IcyFactor(*p.brake_rigging.shoe_friction.icy, 0.5 * kShare * s.work.dissipated[kBrakeShoes]);
+  }
   outer.wheelset_pressure = loads.wheelset_pressure_pa;
   outer.traction_share = loads.traction_share;
   return outer;
@@ -210,15 +217,16 @@ struct ShoeForces {
 /// The same by any rigging and law of friction, and where each wheelset has a cylinder pressure of its own.
 template <class T, int kPerBogie>
 [[gnu::noinline, gnu::flatten]] ShoeForces<T, kPerBogie> ShoeForcesOfCylinders(
-    const BogieVehicle<kPerBogie>& w, const std::array<T, kMostWheelsets>& pressure,
+    const BogieVehicle<kPerBogie>& w, const std::array<T, kMostWheelsets>& pressure, T icy_factor,
     const BodyVector<T, kPerBogie>& v0) {
   constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
   const bool by_vehicle = w.params.brake_rigging.friction_speed == FrictionSpeed::kVehicle;
   ShoeForces<T, kPerBogie> shoes;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const T speed = by_vehicle ? v0.x[kCarbody] : w.rolling.radius_m * v0.pitch[kWheelset1 + i];
-    shoes.turning[i] = kShare * ShoeForce(w.rigging, pressure[i], speed);
-    shoes.standing[i] = by_vehicle ? shoes.turning[i] : kShare * ShoeForce(w.rigging, pressure[i], T(0.0));
+    const T share = kShare * icy_factor;
+    shoes.turning[i] = share * ShoeForce(w.rigging, pressure[i], speed);
+    shoes.standing[i] = by_vehicle ? shoes.turning[i] : share * ShoeForce(w.rigging, pressure[i], T(0.0));
   }
   return shoes;
 }
@@ -226,11 +234,12 @@ template <class T, int kPerBogie>
 template <class T, int kPerBogie>
 ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
                                       const BodyVector<T, kPerBogie>& v0) {
-  if (outer.wheelset_pressure != nullptr) return ShoeForcesOfCylinders(w, *outer.wheelset_pressure, v0);
+  if (outer.wheelset_pressure != nullptr)
+    return ShoeForcesOfCylinders(w, *outer.wheelset_pressure, outer.icy_factor, v0);
   if (!w.rigging.is_plain) {
     std::array<T, kMostWheelsets> pressure;
     pressure.fill(outer.cylinder_pressure);
-    return ShoeForcesOfCylinders(w, pressure, v0);
+    return ShoeForcesOfCylinders(w, pressure, outer.icy_factor, v0);
   }
   const BrakeRiggingParams& rigging = w.params.brake_rigging;
   ShoeForces<T, kPerBogie> shoes;
@@ -486,7 +495,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   ElementVector<T, kPerBogie> dissipative = DampingForces<kAll>(w, deflection, elastic, rate0);
   const RailForces<T, kPerBogie> rail =
       kAll ? ContactForcesOnAnyTrack(w, track, s) : ContactForces<false>(w, track, s);
-  const OuterForces<T> outer = OuterForcesOn(w, track, loads, s);
+  const OuterForces<T> outer = OuterForcesOn<kAll>(w, track, loads, s);
   BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
   AddElementForces(w, dissipative, force);
@@ -522,7 +531,8 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
                WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
   const T zero(0.0);
   const bool has_rare_loads = AnyOf(loads.traction_n != zero) || AnyOf(loads.dynamic_brake_n != zero) ||
-                              AnyOf(loads.curving_resistance_n != zero);
+                              AnyOf(loads.curving_resistance_n != zero) ||
+                              AnyOf(loads.breakaway_resistance_n != zero);
   const bool is_plain = w.IsPlain() && track.IsPlain() && !has_rare_loads;
   const auto step = !is_plain   ? &StepWagonWith<true, true, T, kPerBogie>
                     : Reacts(w) ? &StepWagonWith<false, true, T, kPerBogie>
