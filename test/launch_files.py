@@ -83,6 +83,19 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual(0, wagons(str(LAUNCH / "ore_line_emergency.launch"), "nodes:=4"))
         self.assertEqual(0, wagons(str(LAUNCH / "emergency.launch"), "nodes:=4", "on_nodes:=false"))
 
+    def test_words_that_are_not_understood_are_errors(self):
+        """No is not taken for true, as a text that is not empty would be."""
+        for argument in "on_nodes:=maybe", "end_with_master:=no", "record:=no":
+            word = argument.split("=")[1]
+            done = subprocess.run(
+                ["roslaunch", "--nodes", str(LAUNCH / "emergency.launch"), argument],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            )
+            self.assertNotEqual(0, done.returncode, argument)
+            self.assertRegex(done.stdout, rf"\b{word}\b.? is not", argument)
+
     def test_machines_get_contiguous_blocks_of_nodes(self):
         config = roslaunch.config.load_config_default(
             [
