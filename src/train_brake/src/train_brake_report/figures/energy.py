@@ -54,23 +54,23 @@ def draw(group: Group) -> Figure:
     stack, single, below = canvas.subplots(3, 1, sharex=True, height_ratios=[3, 4, 2])
 
     dissipated = {name: e for name, e in energies.items() if name not in ("kinetic", "potential")}
+    ordered = sorted(dissipated, key=lambda name: -dissipated[name][-1])
+    number = {name: i + 1 for i, name in enumerate(ordered)}  # its colour, the same in both pictures; 0: kinetic
     large = {"kinetic": energies["kinetic"]}
-    large.update(
-        sorted(((n, e) for n, e in dissipated.items() if e[-1] > LARGE * whole_j), key=lambda item: -item[1][-1])
-    )
+    large.update({name: dissipated[name] for name in ordered if dissipated[name][-1] > LARGE * whole_j})
     rest = sum(dissipated.values()) - sum(e for n, e in large.items() if n != "kinetic")
-    stack.stackplot(
-        time_s,
-        [MJ * e for e in large.values()] + [MJ * rest],
-        colors=style.COLOURS[: len(large)] + [style.MUTED],
-        labels=list(large) + ["everything else"],
-        alpha=0.85,
-        linewidth=0,
-    )
+    bands, labels = list(large.values()) + [rest], list(large) + ["everything else"]
+    colours = [style.COLOURS[number.get(name, 0) % len(style.COLOURS)] for name in large] + [style.MUTED]
+    stored = numpy.maximum(0.0, energies["potential"] - energies["potential"][0])
+    if stored.max() > LARGE * whole_j:
+        bands.append(stored)
+        labels.append("stored")
+        colours.append(style.GRID)
+    stack.stackplot(time_s, [MJ * e for e in bands], colors=colours, labels=labels, alpha=0.85, linewidth=0)
     stack.set_ylabel("energy [MJ]")
-    style.legend_above(stack, columns=5 if len(large) < 5 else 4)
+    style.legend_above(stack, columns=5 if len(labels) < 6 else 4)
 
-    _draw_single(single, time_s, dissipated)
+    _draw_single(single, time_s, dissipated, number)
     shares = {run: _residual_share(run) for run in runs}
     largest = max(numpy.abs(share).max() for share in shares.values())
     scale = 10.0 ** numpy.floor(numpy.log10(largest)) if largest > 0.0 else 1.0
@@ -84,7 +84,8 @@ def draw(group: Group) -> Figure:
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is stack)
     caption = (
-        "Top: kinetic energy and what has turned into heat. Middle: what each element has taken up since the start, on a "
+        "Top: kinetic energy, what has turned into heat and, where it shows, what springs and heights store. Middle: what "
+        "each element has taken up since the start, on a "
         "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
         f"{numpy.median(numpy.diff(time_s)):g} s."
     )
@@ -99,20 +100,20 @@ def draw(group: Group) -> Figure:
     return Figure("energy", "Energy ledger", caption + not_shown, canvas)
 
 
-def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict) -> None:
+def _draw_single(axes, time_s: numpy.ndarray, dissipated: dict, number: dict) -> None:
     """Every element that dissipates, over six decades and more."""
     taken = {name: e for name, e in dissipated.items() if e[-1] > LEAST_J}
     smallest = min((e[-1] for e in taken.values()), default=1.0) / 30
     ends = []
-    for i, (name, e) in enumerate(sorted(taken.items(), key=lambda item: -item[1][-1])):
-        colour = style.COLOURS[i % len(style.COLOURS)]
+    for name, e in sorted(taken.items(), key=lambda item: -item[1][-1]):
+        colour = style.COLOURS[number[name] % len(style.COLOURS)]
         axes.semilogy(
             time_s,
             numpy.where(e > smallest, e, numpy.nan),
             color=colour,
             marker=".",
             markersize=3,
-            linestyle="-" if i < len(style.COLOURS) else (0, (4, 2)),
+            linestyle="-" if number[name] < len(style.COLOURS) else (0, (4, 2)),
         )
         ends.append((e[-1], name, colour))
     axes.set_ylabel("dissipated [J]")
