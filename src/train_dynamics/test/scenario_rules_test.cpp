@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -551,6 +552,65 @@ TEST_F(ScenarioRules, RampsOfPatchesNameTheirEntries) {
       "scenarios/a.yaml:6: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
       "surface: half of a ramp lies on each side of an end, and the ones at 20 m (1 m long) and 20.5 m (2 m) "
       "overlap, got 2");
+}
+
+TEST_F(ScenarioRules, ControllersGearTablesAndRampsAreToldAllAtOnce) {
+  const std::string file =
+      Put("scenarios/wrong_in_all.yaml",
+          "name: wrong_in_all\n"
+          "model: 2d\n"
+          "train:\n"
+          "  connection:\n"
+          "    kind: table\n"
+          "    table:\n"
+          "      locked_stiffness_n_per_m: 2.5e8\n"
+          "      locked_damping_ns_per_m: 1.3e6\n"
+          "      solid_stiffness_n_per_m: 2.5e8\n"
+          "      loading: {travel_m: [0, 0.02, 0.04], force_n: [0, 3.0e5, 6.0e5]}\n"
+          "      unloading: {travel_m: [0, 0.02, 0.04], force_n: [0, 1.0e5, 7.0e5]}\n"
+          "  consist:\n"
+          "    - vehicle:\n"
+          "        base: ore_wagon_empty\n"
+          "        wheel_slide_protection: {controller: threshold_3stat}\n"
+          "    - vehicle:\n"
+          "        base: ore_wagon_empty\n"
+          "        wheel_slide_protection: threshold_3state\n"
+          "      count: 2\n"
+          "      vehicles_per_unit: 2\n"
+          "      unit_connection:\n"
+          "        kind: table\n"
+          "        table:\n"
+          "          locked_stiffness_n_per_m: 2.5e8\n"
+          "          locked_damping_ns_per_m: 1.3e6\n"
+          "          solid_stiffness_n_per_m: 2.5e8\n"
+          "          loading: {travel_m: [0, 0.02, 0.04], force_n: [0, 3.0e5, 2.0e5]}\n"
+          "          unloading: {travel_m: [0, 0.02, 0.04], force_n: [0, 1.0e5, 1.0e5]}\n"
+          "track:\n"
+          "  friction_patches:\n"
+          "    - {from_m: 0, to_m: 100, adhesion: low, ramp_length_m: 20}\n"
+          "    - {from_m: 110, to_m: 300, adhesion: wet, ramp_length_m: 20}\n"
+          "brake: single_vehicle\n"
+          "commands: [{time_s: 2, kind: emergency}]\n"
+          "initial_speed_kmh: 80\n"
+          "duration_s: 10\n");
+  const std::string errors = ErrorsOf(file);
+  const auto tells = [&](const std::string& error) {
+    return errors.find("scenarios/wrong_in_all.yaml:" + error) != std::string::npos;
+  };
+  EXPECT_TRUE(
+      tells("11: train.connection.table.unloading.force_n must nowhere be above loading.force_n: "
+            "where the curves cross the device would give energy"))
+      << errors;
+  EXPECT_TRUE(
+      tells("15: train.consist[0].vehicle.wheel_slide_protection.controller must be one of "
+            "threshold_3state, creep_control, got 'threshold_3stat'"))
+      << errors;
+  EXPECT_TRUE(tells("27: train.consist[1].unit_connection.table.loading.force_n must not descend")) << errors;
+  EXPECT_TRUE(
+      tells("32: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
+            "surface"))
+      << errors;
+  EXPECT_EQ(3, std::count(errors.begin(), errors.end(), '\n')) << "four errors, and no other:\n" << errors;
 }
 
 TEST_F(ScenarioRules, WarnsOfPatchesAndDipsOutOfReach) {
