@@ -198,6 +198,24 @@ class DistributedTrain(unittest.TestCase):
                 self.assert_complete(self.launch(f"nodes:={nodes}", "set:=brake=ab_head_end"), expected)
         self.assertNotEqual(expected["state_digest"], train_sim()["state_digest"])
 
+    def test_a_brake_wave_is_the_same_from_every_mapping_and_goes_on_from_its_middle(self):
+        """A shipped train with valves of two kinds; its first reduction, at 2 s, is half way to the tail at 3 s."""
+        scenario = CONFIG / "scenarios" / "mixed_g_p.yaml"
+        settings = ["model=2d", "exchange_interval_s=0.005", "duration_s=4"]
+        begun = pathlib.Path(self.folder.name) / "begun"
+        expected = train_sim(*(word for key in settings for word in ("--set", key)), scenario=scenario)
+        begin = [*settings[:-1], "duration_s=3"]
+        train_sim(*(word for key in begin for word in ("--set", key)), "--out", str(begun), scenario=scenario)
+        with rosbag.Bag(str(begun / "train.bag")) as bag:
+            pressure_pa = [m.pipe_pressure_pa for _, m, _ in bag.read_messages("/train/brake_pressures")][-1]
+        self.assertLess(pressure_pa[0], pressure_pa[-1] - 1e3)  # it is on its way
+        for nodes in 1, 3:
+            with self.subTest(nodes=nodes):
+                launch = self.launch(f"nodes:={nodes}", "set:=" + " ".join(settings), scenario=scenario, vehicles=50)
+                self.assert_complete(launch, expected)
+        launch = self.launch("nodes:=7", f"resume:={begun}", "set:=duration_s=4", scenario=" ", vehicles=50)
+        self.assertEqual(3, self.assert_complete(launch, expected)["resumed_at_s"])
+
     def test_ltd_runs_in_the_master_alone(self):
         expected = train_sim("--model", "ltd")
         launch = self.launch("model:=ltd")
