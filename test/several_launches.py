@@ -136,7 +136,7 @@ class SeveralLaunches(LaunchTest):
         self.wait_for_service("/train/master/resume")
         bag = self.folder / "beside.bag"
         recorder = subprocess.Popen(
-            ["rosbag", "record", "-q", "--buffsize=0", "-O", str(bag), "/train/state", "__name:=beside"],
+            ["rosbag", "record", "-q", "-O", str(bag), "/train/state", "__name:=beside"],
             env=self.master.environment,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
