@@ -21,6 +21,9 @@ sanitize = $(catkin_make) --build build_sanitize -DCATKIN_DEVEL_PREFIX=$(CURDIR)
 tsan     = $(catkin_make) --build build_tsan -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_tsan \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTRAIN_BRAKE_SANITIZE=thread -DCATKIN_BLACKLIST_PACKAGES=train_brake_rviz
 
+clang    = $(catkin_make) --build build_clang -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_clang \
+  -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
+
 fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/devel_fuzz \
   -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DTRAIN_BRAKE_SANITIZE=fuzzer-no-link,address,undefined -DTRAIN_BRAKE_FUZZ=ON
@@ -84,6 +87,20 @@ test-sanitize: deps-test ## the same with the address and undefined-behaviour sa
 	@$(sanitize) $(quietly)
 	@$(sanitize) tests $(quietly)
 	@$(call run_tests,build_sanitize,3000)
+
+# Every shipped scenario, for as long as digests.csv says, by the train_sim of the devel folder $(1): to the same bits.
+same_digests = . $(1)/setup.bash && PATH=/usr/bin:$$PATH src/train_sim/test/digests_test.py $(1)/lib/train_sim/train_sim config
+
+.PHONY: test-sanitize-short
+test-sanitize-short: deps ## train_sim alone with these sanitizers: every shipped scenario for a second, to the same bits
+	@$(sanitize) train_sim $(quietly)
+	@$(call same_digests,devel_sanitize)
+
+.PHONY: test-clang
+test-clang: deps ## train_sim by another compiler (clang), in build_clang/: every shipped scenario, to the same bits
+	@tools/install_packages.sh packages_fuzz.txt
+	@$(clang) train_sim $(quietly)
+	@$(call same_digests,devel_clang)
 
 # Tests in which threads share anything. The rest has one.
 threaded = threaded_block_test|recorder_thread_test|run_control_test|shared_slots?_test|wagon_server_test|train_sim_test|resume_test|wire.test|distributed_train.test|unittest_faults|unittest_soak
@@ -172,7 +189,7 @@ check-style: ## complain about what is not formatted, misspelt, or doubtful in s
 	@catkin_lint --offline -W1 --quiet src
 
 .PHONY: nightly
-nightly: test test-sanitize test-tsan tidy fuzz test-docs-long test-soak ## everything that takes longer than `make test` should
+nightly: test test-clang test-sanitize test-tsan tidy fuzz test-docs-long test-soak ## everything that takes longer than `make test` should
 
 .PHONY: doc
 doc: ## reference of the C++ headers in build/doc/html (Doxygen); any warning is an error
@@ -182,9 +199,16 @@ doc: ## reference of the C++ headers in build/doc/html (Doxygen); any warning is
 
 .PHONY: tidy
 tidy: build ## static analysis (clang-tidy 14)
+	@tools/install_packages.sh packages_tidy.txt
 	@$(release) tests $(quietly)
 	@run-clang-tidy -quiet -p build '^$(CURDIR)/src/' 2>&1 | sed -uE '/clang-tidy-|warnings? generated\.$$|^Suppressed |^Use -header-filter/d'
 
+SINCE ?= HEAD~1
+.PHONY: tidy-short
+tidy-short: build ## ... of the sources (without tests) that changed since the commit SINCE=HEAD~1
+	@tools/install_packages.sh packages_tidy.txt
+	@git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' | xargs -r -n 1 clang-tidy --quiet -p build
+
 .PHONY: clean
 clean: ## remove everything built; results stay
-	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz build_deb build_site site src/CMakeLists.txt .catkin_workspace
+	@rm -rf build devel install build_sanitize devel_sanitize build_tsan devel_tsan build_fuzz devel_fuzz build_clang devel_clang build_deb build_site site src/CMakeLists.txt .catkin_workspace

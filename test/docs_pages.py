@@ -148,6 +148,35 @@ class Links(unittest.TestCase):
         self.assertEqual(set(), set(PAGES) - reached - {ROOT / "CHANGELOG.md"})
 
 
+class Code(unittest.TestCase):
+    """Headers and tests that the pages name."""
+
+    NAMED = [page for page in PAGES if page.name not in ("CHANGELOG.md", "performance.md")]
+
+    def test_headers_exist(self):
+        headers = {str(path) for path in ROOT.glob("src/*/include/**/*.h")}
+        for page in self.NAMED:
+            for number, line in enumerate(page.read_text().splitlines(), 1):
+                for header in re.findall(r"`((?:\w+/)+\w+\.h)`", line):
+                    with self.subTest(f"{page.relative_to(ROOT)}:{number}"):
+                        self.assertTrue(any(path.endswith("/" + header) for path in headers), header)
+
+    def test_tests_exist(self):
+        tests = {path.stem: path.read_text() for path in ROOT.glob("src/*/test/*_test.*")}
+        for page in self.NAMED:
+            for number, line in enumerate(page.read_text().splitlines(), 1):
+                stem = None
+                for word in re.findall(r"`([^`]+)`", line):
+                    with self.subTest(f"{page.relative_to(ROOT)}:{number}"):
+                        if re.fullmatch(r"\w+_test", word) and word != "vehicle_test":
+                            stem = word.replace("train_dynamics_", "")
+                            self.assertTrue(stem in tests, stem)
+                        elif stem and (name := re.fullmatch(r"([A-Z]\w+)\.(\*|[A-Z]\w+)", word)):
+                            suite, test = name.groups()
+                            pattern = rf"TEST\w*\({suite},\s*" + ("" if test == "*" else test + r"\)")
+                            self.assertTrue(re.search(pattern, tests.get(stem, "")), f"{stem}: {word}")
+
+
 class Spelling(unittest.TestCase):
     def test_pages_configuration_and_messages(self):
         checked = [

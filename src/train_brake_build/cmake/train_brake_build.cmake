@@ -20,6 +20,8 @@ function(train_brake_configure_target target)
     CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    # Laws are written over lanes, whose conditions know & and | only.
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>
     # The same bits on every target: no multiply-add where the source does not ask for one.
     -ffp-contract=off
     # errno is never read, so sqrt is one instruction.

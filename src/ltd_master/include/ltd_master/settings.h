@@ -9,7 +9,7 @@ namespace ltd_master {
 ///
 /// A blank within quotes, [lists] or {maps} belongs to the value, which is YAML:
 ///
-///   duration_s=2 description="two words" brake.commands=[{t_s: 2, kind: service}]
+///   duration_s=2 description="two words" commands=[{time_s: 2, kind: apply, reduction_kpa: 80}]
 ///
 /// A quote begins a quoted text where a value begins (behind '=', ':', ',', '[' or '{'), as in YAML; elsewhere it is an
 /// apostrophe.

@@ -10,7 +10,7 @@
 /// (Contraction into fused multiply-adds must be off: -ffp-contract=off.)
 ///
 /// Errors are relative, in ulp: the spacing of doubles at the exact result. The bounds hold in
-/// test/numeric_test.cpp; in brackets the largest error found in some 10^7 arguments each. NaN in gives NaN
+/// test/elementary_test.cpp; in brackets the largest error found in some 10^7 arguments each. NaN in gives NaN
 /// out.
 ///
 /// The polynomial coefficients are minimax for the RELATIVE error of the function: Remez exchange in 60-digit

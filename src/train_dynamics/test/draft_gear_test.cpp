@@ -1,3 +1,5 @@
+#include "train_dynamics/coupler/draft_gear.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+#include "train_dynamics/brake/air_brake.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,12 +7,10 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "paper_vehicle.h"
 #include "strict_config/validate.h"
-#include "train_dynamics/brake/air_brake.h"
 #include "train_dynamics/brake/brake_system.h"
 #include "train_dynamics/brake/pressure_table.h"
 #include "train_dynamics/brake/shoe_friction.h"
@@ -176,8 +176,6 @@ TEST(AirBrake, PressureStaysBetweenWhereItWasAndItsGoal) {
   }
 }
 
-// ---- what a command means beside others
-
 // Pressures of some vehicles over 300 s.
 std::vector<double> History(const std::vector<BrakeCommand>& commands, bool graduated = false) {
   AirBrakeParams params = PaperBrake();
@@ -314,8 +312,6 @@ TEST(EmergencyRiseRate, IsPositiveAndOnceDifferentiableAtAnyDistance) {
               kRounding * 430e3);
 }
 
-// ---- a pipe that opens
-
 TEST(AirBrake, AnOpenPipeIsAnEmergencyFromBothSidesThatNothingEnds) {
   AirBrake brake = Brake({Apply(2.0, 50.0), Release(30.0), Apply(200.0, 50.0), Release(400.0)});
   const AirBrake before = brake;
@@ -370,20 +366,6 @@ TEST(AirBrake, BetweenMeasurementsNothingOvershoots) {
   }
 }
 
-TEST(MonotoneCubic, DoesNotOvershootAStep) {
-  const std::vector<double> x = {0.0, 1.0, 2.0, 3.0, 4.0}, y = {0.0, 0.0, 0.0, 1.0, 1.0};
-  double before = 0.0;
-  for (double at = 0.0; at <= 4.0; at += 0.01) {
-    const double value = MonotoneCubic(x, y, at);
-    EXPECT_GE(value, before - 1e-15);
-    EXPECT_LE(value, 1.0 + 1e-15);
-    before = value;
-  }
-  // A straight line is reproduced; rounding.
-  EXPECT_NEAR(MonotoneCubic({0.0, 1.0, 2.5, 4.0}, {1.0, 3.0, 6.0, 9.0}, 3.1), 7.2, 1e-14);
-  EXPECT_THROW(MonotoneCubic(x, y, 4.01), std::domain_error);
-}
-
 TEST(AirBrake, WithoutCommandsNothingBrakes) {
   const AirBrake brake = Brake({});
   EXPECT_EQ(brake.vehicles(), kVehicles);
@@ -406,53 +388,6 @@ TEST(AirBrake, WrongInputIsRefused) {
   EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Release(9.0)}, PaperTrain()), std::invalid_argument);
   EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Apply(9.0, 60.0)}, PaperTrain()),
                std::invalid_argument);
-}
-
-TEST(PressureTable, IsLinearBetweenRowsAndHoldsItsEnds) {
-  const PressureTable table({1.0, 2.0, 4.0}, {{0.0, 100.0, 300.0}, {50.0, 0.0, 10.0}});
-  ASSERT_EQ(table.vehicles(), 2);
-  std::vector<double> p;
-  const auto expect = [&](double time, double first, double second) {
-    table.PressuresAt(time, p);
-    EXPECT_EQ(p, (std::vector<double>{first, second})) << time;
-  };
-  expect(-5.0, 0.0, 50.0);
-  expect(1.0, 0.0, 50.0);
-  expect(1.25, 25.0, 37.5);
-  expect(2.0, 100.0, 0.0);
-  expect(3.5, 250.0, 7.5);
-  expect(4.0, 300.0, 10.0);
-  expect(1e9, 300.0, 10.0);
-  PressureTable({0.0}, {{7.0}}).PressuresAt(3.0, p);
-  EXPECT_EQ(p, std::vector<double>{7.0});
-}
-
-TEST(PressureTable, WrongTablesAreRefused) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(PressureTable({}, {}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, 0.0}, {{1.0, 2.0}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({1.0, 0.0}, {{1.0, 2.0}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, -2.0}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, nan}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, 1.0}, {{1.0, infinity}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({0.0, nan}, {{1.0, 2.0}}), std::invalid_argument);
-  EXPECT_THROW(PressureTable({nan}, {{1.0}}), std::invalid_argument);
-}
-
-TEST(ShoeFriction, LimitsAndAValueByHand) {
-  const ShoeFrictionParams& p = OreWagon().brake_rigging.shoe_friction;
-  EXPECT_EQ(ShoeFriction(p, 0.0), 0.322);
-  EXPECT_NEAR(ShoeFriction(p, 1e12), 0.161, 1e-10);
-  EXPECT_NEAR(ShoeFriction(p, 80.0 / 3.6), 0.322 * 230.0 / 310.0, 1e-15);  // rounding
-  EXPECT_EQ(ShoeFriction(p, -20.0), ShoeFriction(p, 20.0));
-}
-
-TEST(ShoeForce, IsLoadTimesFriction) {
-  const BrakeRigging p = OreWagon().Rigging();
-  EXPECT_NEAR(ShoeForce(p, 430e3, 0.0), 0.46035 * 430e3 * 0.322, 1e-9);
-  EXPECT_EQ(ShoeForce(p, 0.0, 10.0), 0.0);
 }
 
 }  // namespace

@@ -1,194 +1,19 @@
+#include "train_dynamics/contact/polach.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 #include <vector>
 
 #include "paper_vehicle.h"
 #include "train_dynamics/contact/hertz.h"
 #include "train_dynamics/contact/kalker.h"
-#include "train_dynamics/contact/normal_contact.h"
-#include "train_dynamics/contact/polach.h"
 
 namespace train_dynamics {
 namespace {
 
 const double kPi = std::acos(-1.0);
-constexpr double kStaticWheelLoad = 196.3e3;  // [N], physics of the paper's wagon
-
-// ---- normal contact
-// -------------------------------------------------------------------------------------------------
-
-TEST(NormalContact, PushesOnlyAndOnlyWhileClosed) {
-  EXPECT_EQ(OneSidedForce(6e8, 1e4, 1e-3, 0.0), 6e5);
-  EXPECT_EQ(OneSidedForce(6e8, 1e4, -1e-3, 5.0), 0.0);  // open: an approaching body is not felt yet
-  EXPECT_EQ(OneSidedForce(6e8, 1e4, 1e-6, -1.0), 0.0);  // separating: the damper may not pull
-  EXPECT_EQ(OneSidedEnergy(6e8, -1e-3), 0.0);
-}
-
-TEST(NormalContact, ElasticForceIsTheSlopeOfTheEnergy) {
-  // A central difference of a parabola is exact; what is left is rounding, 1e-16 x energy / step.
-  for (const double d : {-1e-3, 1e-5, 3.3e-4, 2e-3}) {
-    const double h = 1e-6;
-    const double slope = (OneSidedEnergy(6e8, d + h) - OneSidedEnergy(6e8, d - h)) / (2.0 * h);
-    EXPECT_NEAR(slope, OneSidedForce(6e8, 0.0, d, 0.0), 1e-6 * 6e5);
-  }
-}
-
-// ---- Hertz
-// ----------------------------------------------------------------------------------------------------------
-
-struct Curvatures {
-  double longitudinal, lateral;  // A and B in the gap A x^2 + B y^2 [1/m]
-};
-
-// A wheel of these relative curvatures on the paper's steel.
-ContactEllipse EllipseOf(const Curvatures& c) {
-  HertzParams p = OreWagon().wheel_rail.hertz;
-  p.wheel_lateral_radius_m = p.rail_lateral_radius_m = 1.0 / c.lateral;
-  return HertzEllipse(p, 0.5 / c.longitudinal);
-}
-
-double ContactModulus() {
-  const HertzParams& p = OreWagon().wheel_rail.hertz;
-  return p.youngs_modulus_pa / (2.0 * (1.0 - p.poisson_ratio * p.poisson_ratio));
-}
-
-// Depression of both elastic half spaces at (x, y) under the pressure p0 sqrt(1 - x^2/a^2 - y^2/b^2):
-// Boussinesq's integral of p / (pi E* distance) in polar coordinates about (x, y). Along each chord the
-// pressure is the root of a parabola, c + 2 g s - h s^2, whose integral is known; over the directions the
-// trapezoidal rule converges exponentially because the integrand is periodic.
-double Depression(double a, double b, double p0, double x, double y) {
-  constexpr int kDirections = 400;
-  double sum = 0.0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = kPi * i / kDirections;
-    const double u = std::cos(angle), v = std::sin(angle);
-    const double c = 1.0 - x * x / (a * a) - y * y / (b * b);
-    const double g = -(x * u / (a * a) + y * v / (b * b));
-    const double h = u * u / (a * a) + v * v / (b * b);
-    sum += 0.5 * kPi * (c * h + g * g) / (h * std::sqrt(h));
-  }
-  return p0 / (kPi * ContactModulus()) * sum * kPi / kDirections;
-}
-
-TEST(Hertz, TheDeformedSurfacesTouchAllOverTheEllipse) {
-  const HertzParams& steel = OreWagon().wheel_rail.hertz;
-  const double wheel = 0.5 / OreWagon().wheelset.wheel_radius_m;
-  const double lateral = 0.5 * (1.0 / steel.wheel_lateral_radius_m + 1.0 / steel.rail_lateral_radius_m);
-  for (const Curvatures& c :
-       {Curvatures{wheel, lateral}, {1.0, 1.1}, {1.0, 1.00001}, {5.0, 1.0}, {1.0, 40.0}}) {
-    const ContactEllipse ellipse = EllipseOf(c);
-    for (const double load : {1e3, kStaticWheelLoad, 1e6}) {
-      const double a = ellipse.a_per_cbrt_n * std::cbrt(load), b = ellipse.b_per_cbrt_n * std::cbrt(load);
-      const double p0 = 3.0 * load / (2.0 * kPi * a * b);  // the pressure's integral is the load
-      const double approach = Depression(a, b, p0, 0.0, 0.0);
-      for (const auto& [u, v] : {std::array{0.9, 0.0}, {0.0, 0.9}, {0.5, -0.6}, {0.99, 0.1}}) {
-        const double x = u * a, y = v * b;
-        const double gap = c.longitudinal * x * x + c.lateral * y * y;
-        // Where the ellipse is nearly a circle, the eccentricity is found from differences of 1e-6 of numbers
-        // known to 1e-16: 1e-9 is what remains; elsewhere it is rounding.
-        EXPECT_NEAR(approach - Depression(a, b, p0, x, y), gap, 2e-9 * approach);
-      }
-    }
-  }
-}
-
-TEST(Hertz, EqualCurvaturesMakeACircle) {
-  const double radius = 0.4;
-  const ContactEllipse circle = EllipseOf({0.5 / radius, 0.5 / radius});
-  const double closed_form = std::cbrt(3.0 * radius / (4.0 * ContactModulus()));
-  EXPECT_NEAR(circle.a_per_cbrt_n, closed_form, 1e-14 * closed_form);  // rounding
-  EXPECT_EQ(circle.a_per_cbrt_n, circle.b_per_cbrt_n);
-  // Both sides of the circle lead to it: the axes move by about a third of the change in curvature.
-  for (const double change : {-2e-6, 2e-6}) {
-    const ContactEllipse near = EllipseOf({0.5 / radius, 0.5 / radius * (1.0 + change)});
-    EXPECT_NEAR(near.a_per_cbrt_n, closed_form, 2e-6 * closed_form);
-    EXPECT_NEAR(near.b_per_cbrt_n, closed_form, 2e-6 * closed_form);
-  }
-}
-
-TEST(Hertz, AxesSwapWithTheCurvatures) {
-  for (const double ratio : {0.02, 0.3, 0.97, 1.7, 30.0}) {
-    const ContactEllipse one = EllipseOf({1.0, ratio}), other = EllipseOf({ratio, 1.0});
-    EXPECT_NEAR(one.a_per_cbrt_n, other.b_per_cbrt_n, 1e-14 * one.a_per_cbrt_n);  // rounding
-    EXPECT_NEAR(one.b_per_cbrt_n, other.a_per_cbrt_n, 1e-14 * one.b_per_cbrt_n);
-    EXPECT_EQ(one.a_per_cbrt_n > one.b_per_cbrt_n,
-              ratio > 1.0);  // the longer axis along the smaller curvature
-  }
-}
-
-TEST(Hertz, NumbersOfThePapersWheel) {
-  const VehicleParams& p = OreWagon();
-  const ContactEllipse ellipse = HertzEllipse(p.wheel_rail.hertz, p.wheelset.wheel_radius_m);
-  const double a = ellipse.a_per_cbrt_n * std::cbrt(kStaticWheelLoad);
-  const double b = ellipse.b_per_cbrt_n * std::cbrt(kStaticWheelLoad);
-  // Half a unit of the last digit given in the project's notes.
-  EXPECT_NEAR(a, 10.24e-3, 0.005e-3);
-  EXPECT_NEAR(b, 4.41e-3, 0.005e-3);
-  EXPECT_NEAR(1.5 * kStaticWheelLoad / (kPi * a * b), 2.08e9, 0.005e9);
-}
-
-// ---- Kalker
-// ---------------------------------------------------------------------------------------------------------
-
-TEST(Kalker, ReproducesHisTable) {
-  // Kalker's published c11; a/b = 0.1 ... 1, then b/a = 0.9 ... 0.1.
-  const std::array<double, 3> poisson = {0.0, 0.25, 0.5};
-  const std::array<std::vector<double>, 3> slim = {
-      {{2.51, 2.59, 2.68, 2.78, 2.88, 2.98, 3.09, 3.19, 3.29, 3.40},
-       {3.31, 3.37, 3.44, 3.53, 3.62, 3.72, 3.81, 3.91, 4.01, 4.12},
-       {4.85, 4.81, 4.80, 4.82, 4.83, 4.91, 4.97, 5.05, 5.12, 5.20}}};
-  const std::array<std::vector<double>, 3> long_ones = {
-      {{3.51, 3.65, 3.82, 4.06, 4.37, 4.84, 5.57, 6.96, 10.7},
-       {4.22, 4.36, 4.54, 4.78, 5.10, 5.57, 6.34, 7.78, 11.7},
-       {5.30, 5.42, 5.58, 5.80, 6.11, 6.57, 7.34, 8.82, 12.9}}};
-  for (int row = 0; row < 3; ++row) {
-    for (int i = 0; i < 10; ++i) {
-      EXPECT_NEAR(KalkerC11((i + 1) / 10.0, poisson[row]), slim[row][i], 1e-12);  // rounding of the abscissa
-    }
-    for (int i = 0; i < 9; ++i) {
-      EXPECT_NEAR(KalkerC11(10.0 / (9 - i), poisson[row]), long_ones[row][i], 1e-12);
-    }
-  }
-}
-
-TEST(Kalker, InterpolatesBetweenNeighboursAndSmoothlyThroughTheCircle) {
-  for (double ratio = 0.101; ratio < 0.999; ratio += 0.0137) {
-    const double below = KalkerC11(std::floor(10.0 * ratio) / 10.0, 0.0);
-    const double above = KalkerC11(std::ceil(10.0 * ratio) / 10.0, 0.0);
-    EXPECT_GE(KalkerC11(ratio, 0.0), below);
-    EXPECT_LE(KalkerC11(ratio, 0.0), above);
-  }
-  const double h = 1e-6;
-  const double at = KalkerC11(1.0, 0.3);
-  const double slope_before = (at - KalkerC11(1.0 - h, 0.3)) / h,
-               slope_after = (KalkerC11(1.0 + h, 0.3) - at) / h;
-  // One-sided differences err by h times the curvature, about 10, beside rounding of 1e-15 / h.
-  EXPECT_NEAR(slope_before, slope_after, 1e-4);
-}
-
-TEST(Kalker, ValueOfThePapersWheel) {
-  const VehicleParams& p = OreWagon();
-  const ContactEllipse e = HertzEllipse(p.wheel_rail.hertz, p.wheelset.wheel_radius_m);
-  // The notes give three digits.
-  EXPECT_NEAR(KalkerC11(e.a_per_cbrt_n / e.b_per_cbrt_n, p.wheel_rail.hertz.poisson_ratio), 5.70, 0.005);
-}
-
-TEST(Kalker, RefusesWhatTheTableDoesNotHold) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double ratio : {0.0, 0.0999, 10.001, -1.0, nan})
-    EXPECT_THROW(KalkerC11(ratio, 0.3), std::domain_error);
-  for (const double poisson : {-0.001, 0.5001, nan}) EXPECT_THROW(KalkerC11(1.0, poisson), std::domain_error);
-  EXPECT_NO_THROW(KalkerC11(0.1, 0.0));
-  EXPECT_NO_THROW(KalkerC11(10.0, 0.5));
-}
-
-// ---- Polach
-// ---------------------------------------------------------------------------------------------------------
 
 constexpr double kRegularisation = 0.01;  // v0 [m/s]
 
@@ -245,7 +70,7 @@ TEST(Polach, AgreesWithThePublishedFormula) {
         const CreepLaw<double> law = LawOf(rail.adhesion, normal, speed);
         for (double slip = 1e-7; slip < 20.0; slip *= 3.0) {
           const double published = PublishedForce(rail.adhesion, normal, speed, slip);
-          // Rounding of some twenty operations and of the elementary functions (numeric_test).
+          // Rounding of some twenty operations and of the elementary functions (elementary_test).
           EXPECT_NEAR(PolachForce(law, slip).force, published, 1e-13 * published) << rail.name;
         }
       }

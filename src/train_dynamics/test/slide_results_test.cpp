@@ -1,5 +1,7 @@
 // Slides of wheelsets and the work on the track: what is told, and that its sums close.
 
+#include "train_dynamics/train/slide_results.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "simulate.h"
-#include "train_dynamics/train/slide_results.h"
 
 namespace train_dynamics {
 namespace {
@@ -214,8 +215,6 @@ TEST(Slides, AreTheSameForAnyNumberOfThreads) {
   EXPECT_GT(one.results.Slides().size(), 3u);
   EXPECT_EQ(one.results.Memory(), three.results.Memory());
 }
-
-// ---- LTD vehicles ---------------------------------------------------------------------------------------------------
 
 // One wagon on rail without falling friction, mu0 0.03, whose brake asks for more; the ore wagon of the paper.
 std::vector<std::string> Slippery(const std::string& model, bool limit) {

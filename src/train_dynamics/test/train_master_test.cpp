@@ -1,8 +1,9 @@
+#include "train_dynamics/train/train_master.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,38 +12,6 @@
 
 namespace train_dynamics {
 namespace {
-
-// ---- the ledger of every scenario
-// -----------------------------------------------------------------------------------
-
-TEST(Ledger, ClosesForEveryScenarioInTwoDimensions) {
-  int scenarios = 0;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios")) {
-    if (file.path().extension() != ".yaml") continue;
-    const std::string name = file.path().stem();
-    ++scenarios;
-    // table_one_test holds the ledgers of these, to their ends.
-    if (std::count(kPaperScenarios.begin(), kPaperScenarios.end(), name) > 0) continue;
-    const config::LoadedScenario shipped = config::LoadScenario(ScenarioFile(name), {});
-    if (shipped.params.MeanInitialSpeed() == 0.0)
-      continue;  // the scale below is the kinetic energy at the start
-    const std::vector<ConsistGroupParams>& consist = shipped.params.train.consist;
-    const bool has_bodies = std::all_of(consist.begin(), consist.end(), [](const ConsistGroupParams& group) {
-      return !group.vehicle.IsOneMass();
-    });
-    std::vector<std::string> overrides;
-    if (has_bodies) overrides.push_back("model=2d");  // else as it ships, where some vehicles are one mass
-    constexpr int kFew = 10;
-    if (shipped.consist.vehicles() > kFew && shipped.params.duration_s > 10.0)
-      overrides.push_back("duration_s=10");  // long trains are slow
-    ExpectLedgerCloses(Simulate(name, overrides), name);
-  }
-  EXPECT_GE(scenarios, 6);
-}
-
-// ---- exchange
-// -------------------------------------------------------------------------------------------------------
 
 TEST(Exchange, AnIntervalOfFiveMillisecondsIsHarmless) {
   for (const char* model : {"model=2d", "model=ltd"}) {
@@ -79,9 +48,6 @@ TEST(Records, ComeAtTheirTimes) {
   for (int i = 1; i < 6; ++i) EXPECT_LT(outcome.accelerations[i], 0.0);  // the resistance slows it
   EXPECT_NEAR(outcome.ledger.time_s, 0.5, 1e-15);  // the last record has a ledger, due or not
 }
-
-// ---- faults
-// ---------------------------------------------------------------------------------------------------------
 
 // Vehicles in this process, of which the second gets a brake pressure that is NaN from 0.5 s on.
 class SpoiltTransport : public InProcessTransport {
