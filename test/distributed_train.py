@@ -273,7 +273,7 @@ class DistributedTrain(unittest.TestCase):
                 "exchange_p99_ms",
                 "ranks",
                 "slowest_rank",
-                "deadline_warnings",
+                "late_exchanges",
                 "recoveries",
             },
             set(values),

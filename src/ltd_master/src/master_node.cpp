@@ -460,7 +460,7 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
     const auto slowest = std::max_element(last_count_.begin(), last_count_.end()) - last_count_.begin();
     add("ranks", std::to_string(last_count_.size()));
     add("slowest_rank", ranks_->ranks()[slowest].name);
-    add("deadline_warnings", std::to_string(late_exchanges_));
+    add("late_exchanges", std::to_string(late_exchanges_));
     add("recoveries", std::to_string(ranks_->recoveries()));
   }
   array.status.push_back(status);

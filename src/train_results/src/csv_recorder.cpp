@@ -211,7 +211,7 @@ void CsvRecorder::OpenWagon(int vehicle) {
   for (const char* body : {"carbody", "front_bolster", "rear_bolster", "front_frame", "rear_frame"}) {
     fmt::print(wagon, ",{}_pitch_rad", body);
   }
-  for (const char* quantity : {"spring_deflection_{}_m", "wedge_friction_{}_n"}) {
+  for (const char* quantity : {"nest_compression_{}_m", "wedge_friction_{}_n"}) {
     for (const char* quarter : {"front_front", "front_rear", "rear_front", "rear_rear"}) {
       fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), quarter));
     }

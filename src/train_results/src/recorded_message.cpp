@@ -275,7 +275,7 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::W
   return CompareFields(recorded, repeated, [&](const std::string& name, std::size_t size) -> Owners {
     if (name == "exchange" || name == "vehicle") return Train;
     if (name.rfind("body_", 0) == 0) return body;
-    if (name == "nest_compression_m" || name == "wedge_force_n") return nest;
+    if (name == "nest_compression_m" || name == "wedge_friction_n") return nest;
     return size == 0 ? whole : wheelset;
   });
 }

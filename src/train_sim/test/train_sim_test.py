@@ -144,7 +144,7 @@ class TrainSimTest(unittest.TestCase):
             last = list(bag.read_messages("/train/wagon_100/state"))[-1][1]
             self.assertEqual(100, last.vehicle)
             # At 80 km/h without brakes the rails carry the weight: 160.1138 t.
-            self.assertAlmostEqual(160113.8 * 9.81, sum(last.wheel_normal_force_n), delta=2000)
+            self.assertAlmostEqual(160113.8 * 9.81, sum(last.normal_force_n), delta=2000)
 
     def test_same_bits_for_any_threads_and_from_the_resolved_config(self):
         first = self.run_ok(EMERGENCY, "--threads", 1, "--out", self.out, "--set", "duration_s=0.3")
@@ -206,11 +206,11 @@ class TrainSimTest(unittest.TestCase):
             "creep_force_wheelset_1_n",
             "shoe_force_wheelset_1_n",
             "carbody_pitch_rad",
-            "spring_deflection_front_front_m",
+            "nest_compression_front_front_m",
             "wedge_friction_rear_rear_n",
         ):
             self.assertIn(column, rows[0])
-        self.assertAlmostEqual(0.0585, float(rows[-1]["spring_deflection_front_front_m"]), places=4)
+        self.assertAlmostEqual(0.0585, float(rows[-1]["nest_compression_front_front_m"]), places=4)
 
     def test_a_saved_pressure_table_repeats_the_run(self):
         """The paper's procedure: pressures from an LTD run, saved every 0.01 s, interpolated by the wagons."""
@@ -952,7 +952,7 @@ class TrainSimTest(unittest.TestCase):
         for at, field, index, where in (
             ("/train/wagon_100/state", "body_z_mps", 1, "vehicle 100, front bolster: body_z_mps"),
             ("/train/wagon_242/state", "creep_force_n", 3, "vehicle 242, wheelset 4: creep_force_n"),
-            ("/train/wagon_242/state", "wedge_force_n", 2, "vehicle 242, rear bogie, front half: wedge_force_n"),
+            ("/train/wagon_242/state", "wedge_friction_n", 2, "vehicle 242, rear bogie, front half: wedge_friction_n"),
             ("/train/state", "position_m", 7, "vehicle 8: position_m"),
             ("/train/in_train_forces", "coupler_force_n", 99, "connection 100: coupler_force_n"),
             ("/train/brake_pressures", "cylinder_pressure_pa", 0, "vehicle 1: cylinder_pressure_pa"),

@@ -19,12 +19,12 @@ void ForEachField(Detail& detail, Message& message, Copy copy) {
   copy(detail.velocity.x, message.body_x_mps);
   copy(detail.velocity.z, message.body_z_mps);
   copy(detail.velocity.pitch, message.body_pitch_radps);
-  copy(detail.output.normal_force_n, message.wheel_normal_force_n);
+  copy(detail.output.normal_force_n, message.normal_force_n);
   copy(detail.output.creepage, message.creepage);
   copy(detail.output.creep_force_n, message.creep_force_n);
   copy(detail.output.shoe_force_n, message.shoe_force_n);
   copy(detail.nest_compression_m, message.nest_compression_m);
-  copy(detail.output.wedge_friction_n, message.wedge_force_n);
+  copy(detail.output.wedge_friction_n, message.wedge_friction_n);
 }
 
 /// Copies an array of as many numbers, which may be of another type.

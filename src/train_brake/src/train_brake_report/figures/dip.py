@@ -44,7 +44,7 @@ def draw(group: Group) -> Figure:
     canvas = new_canvas(6.0)
     above, below = canvas.subplots(2, 1, sharex=True)
 
-    force_kn = KN / WHEELS * wagon["wheel_normal_force_n"][shown, 0]
+    force_kn = KN / WHEELS * wagon["normal_force_n"][shown, 0]
     above.plot(time_s, force_kn, color=style.BLUE, label="wheel of the first wheelset")
     above.axhline(force_kn[0], color=style.MUTED, linewidth=1.0, linestyle=(0, (4, 3)), label="before the dip")
     above.set_ylabel("vertical force [kN]")
