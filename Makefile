@@ -169,7 +169,7 @@ check-deps: ## check who includes whom
 	@tools/check_dependencies.sh
 
 .PHONY: reference
-reference: build ## renew what is made from the code: docs/configuration.md, config/schema/, docs/ros_interface.md
+reference: build ## renew what is made from the code: docs/configuration.md, result_files.md, ros_interface.md, config/schema/
 	@$(in_workspace) && tools/reference.sh
 
 # Python files; those of programs have no ending.

@@ -11,4 +11,5 @@ mkdir -p config/schema
 sed -n 's/^- \[\([a-z_]*\)\](#.*): .*/\1/p' docs/configuration.md | grep -v '^tables$' | while read -r kind; do
   $program keys --json-schema "$kind" > "config/schema/$kind.schema.json"
 done
+$program keys --results > docs/result_files.md
 tools/ros_interface.py > docs/ros_interface.md

@@ -10,6 +10,7 @@
 
 #include "train_results/conversions.h"
 #include "train_results/plain_file.h"
+#include "train_results/result_tables.h"
 
 namespace train_results {
 namespace {
@@ -22,7 +23,7 @@ using train_dynamics::WagonDetail;
 
 constexpr const char* kHistory = "train_history.csv";
 constexpr const char* kPressures = "pressures.csv";
-std::string WagonTable(int vehicle, int vehicles) {
+std::string WagonFile(int vehicle, int vehicles) {
   return train_dynamics::VehicleName(vehicle, vehicles) + ".csv";
 }
 
@@ -43,17 +44,9 @@ void Row(std::ofstream& stream, const Values& values) {
 }
 
 /// A line for each vehicle, a column for each number of its record.
-std::string VehicleTable(const train_dynamics::RecordArrays& record) {
+std::string VehicleRows(const train_dynamics::RecordArrays& record) {
   using train_dynamics::RecordInfo;
-  std::string table = "vehicle";
-  train_dynamics::ForEachRecordField(
-      [&](const RecordInfo& field, const auto&) {
-        for (int i = 1; i <= field.numbers; ++i) {
-          table += field.numbers == 1 ? fmt::format(",{}", field.name) : fmt::format(",{}_{}", field.name, i);
-        }
-      },
-      record);
-  table += '\n';
+  std::string table = VehicleTable().Header();
   for (std::size_t vehicle = 0; vehicle < record.speed_mps.size(); ++vehicle) {
     table += std::to_string(vehicle + 1);
     train_dynamics::ForEachRecordField(
@@ -71,10 +64,7 @@ std::string VehicleTable(const train_dynamics::RecordArrays& record) {
 
 CsvRecorder::CsvRecorder(const std::filesystem::path& folder)
     : folder_(folder), history_(Open(folder / kHistory)), pressures_(Open(folder / kPressures)) {
-  fmt::print(
-      history_,
-      "time_s,mean_speed_kmh,lead_speed_kmh,tail_speed_kmh,mean_position_m,max_tension_n,max_compression_n,"
-      "mean_cylinder_pressure_pa\n");
+  history_ << HistoryTable().Header();
 }
 
 CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& checkpoint, int vehicles)
@@ -104,7 +94,7 @@ CsvRecorder::CsvRecorder(const std::filesystem::path& folder, const Bytes& check
     if (vehicle >= static_cast<std::uint64_t>(vehicles)) {
       throw train_dynamics::SnapshotError("is damaged: no such vehicle");
     }
-    check(WagonTable(static_cast<int>(vehicle), vehicles));
+    check(WagonFile(static_cast<int>(vehicle), vehicles));
     wagons_.emplace(static_cast<int>(vehicle), std::ofstream());
   }
   reader.End();
@@ -118,7 +108,7 @@ void CsvRecorder::GoOn() {
   history_ = go_on(kHistory);
   pressures_ = go_on(kPressures);
   for (auto& [name, stream] : brake_) stream = go_on(name);
-  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonTable(vehicle, vehicles_));
+  for (auto& [vehicle, stream] : wagons_) stream = go_on(WagonFile(vehicle, vehicles_));
 }
 
 Bytes CsvRecorder::Checkpoint() {
@@ -143,7 +133,7 @@ Bytes CsvRecorder::Checkpoint() {
   writer.Add(std::uint64_t{wagons_.size()});
   for (auto& [vehicle, stream] : wagons_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));
-    add(stream, WagonTable(vehicle, vehicles_));
+    add(stream, WagonFile(vehicle, vehicles_));
   }
   return writer.bytes();
 }
@@ -160,23 +150,22 @@ void CsvRecorder::Record(const TrainRecord& record) {
              *std::max_element(force.begin(), force.end()), *std::min_element(force.begin(), force.end()),
              mean(record.cylinder_pressure_pa));
 
-  const auto row = [&](std::ofstream& stream, const char* unit, const std::vector<double>& values) {
-    if (record.exchange == 0) {
-      fmt::print(stream, "time_s");
-      for (size_t i = 1; i <= values.size(); ++i) fmt::print(stream, ",vehicle_{}{}", i, unit);
-      stream << '\n';
-    }
+  const auto row = [&record](std::ofstream& stream, const std::vector<double>& values) {
     fmt::print(stream, "{:.6f}", record.time_s);
     Row(stream, values);
     stream << '\n';
   };
-  row(pressures_, "_pa", record.cylinder_pressure_pa);
+  if (record.exchange == 0) pressures_ << PressureTable().Header(vehicles_);
+  row(pressures_, record.cylinder_pressure_pa);
   if (!record.brake.empty()) {
+    if (record.exchange == 0) {
+      for (const ResultTable& table : BrakeTables()) {
+        brake_.emplace(table.file, Open(folder_ / table.file)).first->second << table.Header(vehicles_);
+      }
+    }
     train_dynamics::ForEachBrakeField(
         [&](const std::string& name, const std::vector<double>& values) {
-          if (brake_.count(name + ".csv") == 0)
-            brake_.emplace(name + ".csv", Open(folder_ / (name + ".csv")));
-          row(brake_.at(name + ".csv"), name == "valve_mode" ? "" : "_pa", values);
+          row(brake_.at(name + ".csv"), values);
         },
         record.brake);
   }
@@ -201,27 +190,13 @@ void CsvRecorder::Record(const TrainRecord& record) {
 }
 
 void CsvRecorder::OpenWagon(int vehicle) {
-  std::ofstream wagon = Open(folder_ / WagonTable(vehicle, vehicles_));
-  fmt::print(wagon, "time_s,speed_mps");
-  for (const char* quantity : {"normal_force_{}_n", "creepage_{}", "creep_force_{}_n", "shoe_force_{}_n"}) {
-    for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {
-      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), fmt::format("wheelset_{}", i)));
-    }
-  }
-  for (const char* body : {"carbody", "front_bolster", "rear_bolster", "front_frame", "rear_frame"}) {
-    fmt::print(wagon, ",{}_pitch_rad", body);
-  }
-  for (const char* quantity : {"nest_compression_{}_m", "wedge_friction_{}_n"}) {
-    for (const char* quarter : {"front_front", "front_rear", "rear_front", "rear_rear"}) {
-      fmt::print(wagon, "," + fmt::format(fmt::runtime(quantity), quarter));
-    }
-  }
-  fmt::print(wagon, ",front_coupler_force_n,rear_coupler_force_n,cylinder_pressure_pa\n");
+  std::ofstream wagon = Open(folder_ / WagonFile(vehicle, vehicles_));
+  wagon << WagonTable().Header();
   wagons_.emplace(vehicle, std::move(wagon));
 }
 
 void CsvRecorder::Close() {
-  WriteFile(folder_ / "vehicles.csv", VehicleTable(last_));
+  WriteFile(folder_ / "vehicles.csv", VehicleRows(last_));
   for (std::ofstream* stream : {&history_, &pressures_}) stream->flush();
   for (auto& [name, stream] : brake_) stream.flush();
   for (auto& [vehicle, stream] : wagons_) stream.flush();
@@ -232,12 +207,11 @@ void CsvRecorder::CheckAll() const {
   Check(history_, folder_ / kHistory);
   Check(pressures_, folder_ / kPressures);
   for (const auto& [name, stream] : brake_) Check(stream, folder_ / name);
-  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / WagonTable(vehicle, vehicles_));
+  for (const auto& [vehicle, stream] : wagons_) Check(stream, folder_ / WagonFile(vehicle, vehicles_));
 }
 
 void WriteCouplerTable(const std::filesystem::path& folder, const train_dynamics::TrainMaster& master) {
-  std::string couplers =
-      "connection,max_tension_n,max_tension_time_s,max_compression_n,max_compression_time_s\n";
+  std::string couplers = CouplerTable().Header();
   int number = 1;
   for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
     couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,

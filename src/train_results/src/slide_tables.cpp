@@ -5,30 +5,26 @@
 #include <string>
 
 #include "train_results/plain_file.h"
+#include "train_results/result_tables.h"
 
 namespace train_results {
 
 void WriteSlideTables(const std::filesystem::path& folder, const train_dynamics::SlideResults& results) {
-  std::string table;
-  train_dynamics::SlideEvent head;
-  train_dynamics::ForEachSlideField(
-      [&table](const char* name, const char*, double) {
-        table += (table.empty() ? "" : ",") + std::string(name);
-      },
-      head);
+  std::string table = SlideTable().Header();
   for (const train_dynamics::SlideEvent& slide : results.Slides()) {
-    char separator = '\n';
+    const char* separator = "";
     train_dynamics::ForEachSlideField(
         [&](const char*, const char*, double number) {
           table += fmt::format("{}{:.9g}", separator, number);
-          separator = ',';
+          separator = ",";
         },
         slide);
+    table += '\n';
   }
-  if (!results.Slides().empty()) WriteFile(folder / "slides.csv", table + "\n");
+  if (!results.Slides().empty()) WriteFile(folder / "slides.csv", table);
 
   const train_dynamics::TrackWork track = results.Track();
-  table = "from_m,to_m,creep_j,brake_j\n";
+  table = TrackWearTable().Header();
   for (std::size_t i = 0; i < track.creep_j.size(); ++i) {
     const long from_m = track.from_m + static_cast<long>(i);
     table += fmt::format("{},{},{:.9g},{:.9g}\n", from_m, from_m + 1, track.creep_j[i], track.brake_j[i]);

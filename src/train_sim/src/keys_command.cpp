@@ -305,6 +305,10 @@ void PrintMarkdown(const Reference& reference) {
 }  // namespace
 
 int PrintKeys(const KeysOptions& options) {
+  if (options.results) {
+    PrintResultFiles();
+    return train_run::kSuccess;
+  }
   if (!options.schema_kind.empty()) {
     const std::vector<FileKind> kinds = train_dynamics::config::ConfigurationKeys();
     std::vector<std::string> names;

@@ -112,7 +112,8 @@ int StartFolder(const std::string& name) {
   for (const Template& file : kTemplates) WriteFile(folder / file.file, Modeline(file.schema) + file.text);
   train_console::Print("{} has a train, a route, a scenario and a launch file:\n", name);
   for (const Template& file : kTemplates) train_console::Print("  {}\n", (folder / file.file).string());
-  train_console::Print("next: train_sim run {}\n", (folder / "scenarios/stop.yaml").string());
+  train_console::Print("next: train_sim run {} --out {}\n", (folder / "scenarios/stop.yaml").string(),
+                       (folder / "results/stop").string());
   if (train_dynamics::config::PartFolders().empty()) {
     train_console::Tell(
         "train_sim: its parts are shipped ones, which are not found now: source setup.bash of the workspace, "

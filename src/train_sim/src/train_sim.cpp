@@ -200,6 +200,8 @@ int Main(int argc, char** argv) {
   show_keys->add_option("--json-schema", keys.schema_kind, "print the JSON schema of files of this kind")
       ->type_name("KIND")
       ->excludes(markdown);
+  show_keys->add_flag("--results", keys.results, "print docs/result_files.md: what a run leaves")
+      ->excludes(markdown);
   show_keys->callback([&] { command = [&] { return train_sim::PrintKeys(keys); }; });
 
   std::string folder;

@@ -205,7 +205,87 @@ class Schema(unittest.TestCase):
         return done.stderr if done.returncode == 2 else ""
 
 
-class KeysTest(Reference, Schema):
+def leaves(value, path=""):
+    """The paths of a summary's numbers as the page names them: a.b within a map, a[].b in a list of maps."""
+    if isinstance(value, dict):
+        return {leaf for key, below in value.items() for leaf in leaves(below, f"{path}.{key}" if path else key)}
+    if isinstance(value, list):
+        return {leaf for below in value for leaf in leaves(below, f"{path}[]")}
+    return {path}
+
+
+class ResultFiles(unittest.TestCase):
+    """What runs of several kinds leave, against the page."""
+
+    RUNS = (
+        ("lock_order", "duration_s=30", "detail_vehicles=[1]"),
+        ("mixed_g_p", "duration_s=1"),
+        ("drive_and_stop", "duration_s=150", "record_interval_s=1", "--twin"),
+        ("single_wagon_stop", "duration_s=0.1"),
+    )
+
+    @classmethod
+    def setUpClass(cls):
+        os.environ["TRAIN_BRAKE_CONFIG"] = str(CONFIG)
+        cls.page = keys("--results")
+        tables = re.findall(r"^### (\S+)\n\nWritten .+\n\n\| column .*\n.*\n((?:\|.*\n)+)", cls.page, re.M)
+        cls.tables = {
+            file: re.findall(r"`(.*?)`", "".join(re.findall(r"^\| (.*?) \|", rows, re.M))) for file, rows in tables
+        }
+        cls.fields = set(re.findall(r"^\| `(\S+)` \|", cls.page.split("## summary.json")[1], re.M))
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folders = []
+        for number, (scenario, *changes) in enumerate(cls.RUNS):
+            folder = pathlib.Path(cls.temporary.name) / str(number)
+            arguments = [a for change in changes for a in ([change] if change.startswith("--") else ["--set", change])]
+            done = train_sim("run", CONFIG / f"scenarios/{scenario}.yaml", *arguments, "--csv", "--out", folder)
+            assert done.returncode == 0, done.stderr
+            cls.folders.append(folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_page_is_fresh(self):
+        self.assertEqual(
+            self.page, (ROOT / "docs/result_files.md").read_text(), f"docs/result_files.md is stale; {RENEW}"
+        )
+
+    def test_every_table_has_the_columns_of_the_page_and_every_file_is_on_it(self):
+        self.assertGreater(len(self.tables), 9)
+        files = set(re.findall(r"^\| `(\S+)` \|", self.page.split("## Tables")[0], re.M))
+        seen = set()
+        for folder in self.folders:
+            for file in folder.iterdir():
+                name = re.sub(r"^wagon_\d+", "wagon_NNN", file.name)
+                if name in files:
+                    continue
+                self.assertIn(name, self.tables, folder)
+                seen.add(name)
+                header = file.read_text().split("\n")[0].split(",")
+                expected = self.tables[name]
+                if "vehicle_1" in "".join(expected):
+                    vehicles = json.loads((folder / "summary.json").read_text())["vehicles"]
+                    expected = ["time_s"] + [expected[1].replace("1", str(i)) for i in range(1, vehicles + 1)]
+                self.assertEqual(header, expected, f"{folder}/{name}")
+        self.assertEqual(seen, set(self.tables))
+
+    def test_every_number_of_the_summary_is_on_the_page_and_the_other_way_round(self):
+        seen = set()
+        for folder in self.folders:
+            for leaf in leaves(json.loads((folder / "summary.json").read_text())):
+                named = leaf if leaf in self.fields else re.sub(r"\.\w+$", ".*", leaf)
+                if named in ("twin", "max_tension_n", "max_compression_n"):  # null
+                    continue
+                self.assertIn(named, self.fields, folder)
+                seen.add(named)
+        others = {
+            field for field in self.fields if re.match(r"external|partings\[\]", field)
+        }  # of trains that are not run here
+        self.assertEqual(seen, self.fields - others)
+
+
+class KeysTest(Reference, Schema, ResultFiles):
     pass
 
 

@@ -7,8 +7,12 @@ namespace train_sim {
 struct KeysOptions {
   std::string path;         ///< of which keys; empty: all
   bool markdown = false;    ///< the page docs/configuration.md
+  bool results = false;     ///< the page docs/result_files.md
   std::string schema_kind;  ///< print the JSON schema of this kind of file; empty: none
 };
+
+/// Prints the page of what a run leaves: its files, the columns of its tables, the numbers of summary.json.
+void PrintResultFiles();
 
 /// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists by which they are read.
 ///
