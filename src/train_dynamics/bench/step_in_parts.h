@@ -42,7 +42,7 @@ class StepInParts {
   }
 
   /// Shoes, rolling resistance, air drag, couplers, grade.
-  void BrakeAndResistance() { outer_ = OuterForcesOn(*wagon_, *track_, loads_, s_); }
+  void BrakeAndResistance() { outer_ = OuterForcesOn<false>(*wagon_, *track_, loads_, s_); }
 
   /// The energy ledger's.
   void Books() {
