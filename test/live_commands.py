@@ -51,6 +51,17 @@ time.sleep(0.5)
 
 
 class LiveCommands(LaunchTest):
+    def assert_verified(self, out, digest):
+        """Repeated in process, the run has that digest."""
+        verified = subprocess.run(
+            ["rosrun", "train_sim", "train_sim", "verify", str(out)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.assertEqual(0, verified.returncode, verified.stdout)
+        self.assertIn(digest, verified.stdout)
+
     def give(self, **command):
         return self.tool(
             "rosservice", "call", "/train/driver/give", json.dumps({"command": command}).replace("NaN", ".nan")
@@ -109,14 +120,7 @@ class LiveCommands(LaunchTest):
         self.assertTrue(all(c["live"] for c in summary["commands"]))
         self.assertEqual([0, 1000, 2000, 2000], [c["exchange"] for c in summary["commands"]])
 
-        verified = subprocess.run(
-            ["rosrun", "train_sim", "train_sim", "verify", str(launch.out)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        self.assertEqual(0, verified.returncode, verified.stdout)
-        self.assertIn(summary["state_digest"], verified.stdout)
+        self.assert_verified(launch.out, summary["state_digest"])
         again = train_sim(scenario=launch.out / "replay.yaml")
         self.assertEqual(summary["state_digest"], again["state_digest"])
         # A branch takes over what came live before it.
@@ -124,14 +128,7 @@ class LiveCommands(LaunchTest):
         train_sim("--resume", str(launch.out), "--set", "duration_s=9", "--out", str(branch), scenario=None)
         longer = train_sim("--set", "duration_s=9", scenario=launch.out / "replay.yaml")
         self.assertEqual(longer["state_digest"], json.loads((branch / "summary.json").read_text())["state_digest"])
-        verified = subprocess.run(
-            ["rosrun", "train_sim", "train_sim", "verify", str(branch)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        self.assertEqual(0, verified.returncode, verified.stdout)
-        self.assertIn(longer["state_digest"], verified.stdout)
+        self.assert_verified(branch, longer["state_digest"])
         without = train_sim(*[word for s in SETTINGS for word in ("--set", s)])
         self.assertNotEqual(summary["state_digest"], without["state_digest"])
         self.assertLess(summary["final_speed_kmh"]["mean"], without["final_speed_kmh"]["mean"])
@@ -164,14 +161,7 @@ class LiveCommands(LaunchTest):
         self.assertEqual(28, len(summary["commands"]))
         self.assertGreater(len({c["exchange"] for c in summary["commands"]}), 10)
         self.assertEqual(3, len({c["command"].split()[0] for c in summary["commands"]}))
-        verified = subprocess.run(
-            ["rosrun", "train_sim", "train_sim", "verify", str(launch.out)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        self.assertEqual(0, verified.returncode, verified.stdout)
-        self.assertIn(summary["state_digest"], verified.stdout)
+        self.assert_verified(launch.out, summary["state_digest"])
         self.assertEqual(summary["state_digest"], train_sim(scenario=launch.out / "replay.yaml")["state_digest"])
 
     def test_keys_and_joystick_of_a_cab(self):

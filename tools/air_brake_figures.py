@@ -75,23 +75,20 @@ def service(table, out):
     save(figure, out, "service")
 
 
+def pipe_and_reservoir(axes, table, vehicle, colour):
+    for quantity, label, dashes in (
+        ("pipe_pressure_pa", "pipe", "-"),
+        ("auxiliary_reservoir_pa", "auxiliary reservoir", (0, (4, 2))),
+    ):
+        values = KPA * table[quantity][:, vehicle - 1]
+        axes.plot(table.time_s, values, color=colour, linestyle=dashes, label=f"{label}, vehicle {vehicle}")
+
+
 def charging(table, out):
     figure, axes = pyplot.subplots(figsize=(11, 3.6), layout="constrained")
     last = table["pipe_pressure_pa"].shape[1]
     for vehicle, colour in zip((1, (last + 1) // 2, last), style.COLOURS):
-        axes.plot(
-            table.time_s,
-            KPA * table["pipe_pressure_pa"][:, vehicle - 1],
-            color=colour,
-            label=f"pipe, vehicle {vehicle}",
-        )
-        axes.plot(
-            table.time_s,
-            KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1],
-            color=colour,
-            linestyle=(0, (4, 2)),
-            label=f"auxiliary reservoir, vehicle {vehicle}",
-        )
+        pipe_and_reservoir(axes, table, vehicle, colour)
     tail = table["pipe_pressure_pa"][:, -1]
     goal = 0.95 * table["pipe_pressure_pa"][-1, 0]
     at_s = table.time_s[numpy.argmax(tail >= goal)]
@@ -111,19 +108,7 @@ def second_application(table, out):
     above.set_ylabel("vehicle")
     last = table["pipe_pressure_pa"].shape[1]
     for vehicle, colour in ((1, style.BLUE), (last, style.VERMILLION)):
-        below.plot(
-            table.time_s,
-            KPA * table["pipe_pressure_pa"][:, vehicle - 1],
-            color=colour,
-            label=f"pipe, vehicle {vehicle}",
-        )
-        below.plot(
-            table.time_s,
-            KPA * table["auxiliary_reservoir_pa"][:, vehicle - 1],
-            color=colour,
-            linestyle=(0, (4, 2)),
-            label=f"auxiliary reservoir, vehicle {vehicle}",
-        )
+        pipe_and_reservoir(below, table, vehicle, colour)
     for time_s, text in ((5, "70 kPa"), (65, "release"), (80, "50 kPa"), (180, "100 kPa")):
         for axes in (above, below):
             axes.axvline(time_s, color=style.MUTED, linestyle=(0, (1, 2)))

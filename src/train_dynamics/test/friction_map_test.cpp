@@ -1,5 +1,4 @@
-// What is under a wheel, looked up in a track of many entries, against a scan of all entries; the ramps of patches
-// against their definition; the laws over lanes against those over double.
+// Patches of rail: what holds under a wheel, and their ramps against their definition.
 
 #include "train_dynamics/track/friction_map.h"
 
@@ -10,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "leaves_on_rail.h"
 #include "paper_vehicle.h"
 #include "strict_config/validate.h"
 #include "train_dynamics/numeric/lanes.h"
@@ -36,41 +36,14 @@ TEST(FrictionPatch, ReplacesTheVehiclesOwn) {
   EXPECT_EQ(RailSurfaceUnder<double>(track, 55.0, own).friction, 0.3);
 }
 
-AdhesionParams Surface(double mu0, double a, double b, double ka, double ks) {
-  AdhesionParams surface;
-  surface.friction_coefficient = mu0;
-  surface.friction_ratio = a;
-  surface.friction_decay_s_per_m = b;
-  surface.adhesion_reduction = ka;
-  surface.slip_reduction = ks;
-  return surface;
-}
-
-const AdhesionParams kOwn = Surface(0.4, 0.8, 0.1, 0.9, 0.5);
-const AdhesionParams kLeaves = Surface(0.05, 0.4, 0.2, 0.3, 0.1);
-
-std::array<double, 5> Numbers(const AdhesionParams& p) {
-  return {p.friction_coefficient, p.friction_ratio, p.friction_decay_s_per_m, p.adhesion_reduction,
-          p.slip_reduction};
-}
-
-FrictionPatchParams Leaves(double from_m, double to_m, double ramp_m) {
-  FrictionPatchParams patch;
-  patch.from_m = from_m;
-  patch.to_m = to_m;
-  patch.adhesion = kLeaves;
-  patch.ramp_length_m = ramp_m;
-  return patch;
-}
-
 TEST(RailPatch, RampsGoLinearlyAroundItsEnds) {
   TrackParams params;
   params.friction_patches = {Leaves(100.0, 200.0, 4.0)};
   const Track track(params);
-  const std::array<double, 5> own = Numbers(kOwn), leaves = Numbers(kLeaves);
+  const std::array<double, 5> own = AdhesionNumbers(kOwn), leaves = AdhesionNumbers(kLeaves);
   for (double x = 90.0; x < 210.0; x += 0.01) {
     const double up = std::clamp((x - 98.0) / 4.0, 0.0, 1.0), down = std::clamp((x - 198.0) / 4.0, 0.0, 1.0);
-    const std::array<double, 5> found = Numbers(track.SurfaceAt(x, kOwn));
+    const std::array<double, 5> found = AdhesionNumbers(track.SurfaceAt(x, kOwn));
     for (int i = 0; i < 5; ++i) {
       EXPECT_NEAR(found[i], own[i] + (up - down) * (leaves[i] - own[i]), 1e-13)
           << x;  // rounding of (x - 98) / 4

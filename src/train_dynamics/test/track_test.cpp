@@ -1,5 +1,4 @@
-// What is under a wheel, looked up in a track of many entries, against a scan of all entries; the ramps of patches
-// against their definition; the laws over lanes against those over double.
+// What is under a wheel, looked up in a track of many entries, against a scan of all entries; over lanes against one by one.
 
 #include "train_dynamics/track/track.h"
 
@@ -12,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "leaves_on_rail.h"
 #include "strict_config/validate.h"
 #include "train_dynamics/numeric/lanes.h"
 #include "train_dynamics/vehicle/wagon_step.h"
@@ -20,33 +20,6 @@ namespace train_dynamics {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-AdhesionParams Surface(double mu0, double a, double b, double ka, double ks) {
-  AdhesionParams surface;
-  surface.friction_coefficient = mu0;
-  surface.friction_ratio = a;
-  surface.friction_decay_s_per_m = b;
-  surface.adhesion_reduction = ka;
-  surface.slip_reduction = ks;
-  return surface;
-}
-
-const AdhesionParams kOwn = Surface(0.4, 0.8, 0.1, 0.9, 0.5);
-const AdhesionParams kLeaves = Surface(0.05, 0.4, 0.2, 0.3, 0.1);
-
-std::array<double, 5> Numbers(const AdhesionParams& p) {
-  return {p.friction_coefficient, p.friction_ratio, p.friction_decay_s_per_m, p.adhesion_reduction,
-          p.slip_reduction};
-}
-
-FrictionPatchParams Leaves(double from_m, double to_m, double ramp_m) {
-  FrictionPatchParams patch;
-  patch.from_m = from_m;
-  patch.to_m = to_m;
-  patch.adhesion = kLeaves;
-  patch.ramp_length_m = ramp_m;
-  return patch;
-}
 
 // Entries that touch, overlap, lie in one another and leave gaps.
 TrackParams RandomTrack(unsigned seed, int entries, double length_m) {
@@ -145,7 +118,7 @@ TEST(Track, GivesEveryLaneWhatItGivesOneVehicle) {
           ASSERT_EQ(grade[lane], GradeAt(track, at[lane]));
           ASSERT_EQ(rail.height[lane], RailHeightAt(track, at[lane]).height);
           ASSERT_EQ(rail.slope[lane], RailHeightAt(track, at[lane]).slope);
-          const std::array<double, 5> expected = Numbers(track.SurfaceAt(at[lane], kOwn));
+          const std::array<double, 5> expected = AdhesionNumbers(track.SurfaceAt(at[lane], kOwn));
           ASSERT_EQ(surface.friction[lane], expected[0]) << at[lane];
           const CreepShape<Pack> by_lane = ShapeOf(surface);
           const std::array<double, 4> shape = {by_lane.friction_ratio[lane], by_lane.friction_decay[lane],

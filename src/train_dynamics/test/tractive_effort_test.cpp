@@ -6,21 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "locomotive_ride.h"
 #include "strict_config/validate.h"
 #include "train_dynamics/traction/locomotive.h"
 
 namespace train_dynamics {
 namespace {
-
-/// A locomotive that reaches its effort at once.
-TractionParams QuickLocomotive(double starting_effort_n, double rim_power_w) {
-  TractionParams p;
-  p.tractive_effort.starting_effort_n = starting_effort_n;
-  p.tractive_effort.rim_power_w = rim_power_w;
-  p.tractive_effort.usable_adhesion.law = UsableAdhesionLaw::kUnlimited;
-  p.drive = {1e12, 1e12, 0.0};
-  return p;
-}
 
 TEST(NotchShare, IsThatOfWholeNotchesAndLinearBetweenThem) {
   const std::vector<double> shares = {0.1, 0.4, 1.0};
