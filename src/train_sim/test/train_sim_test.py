@@ -490,7 +490,7 @@ class TrainSimTest(unittest.TestCase):
         )
         self.assertNotIn("open files", limited(resource.RLIMIT_NOFILE, 740, "--nodes", "242"))
 
-    @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
+    @unittest.skipIf(os.geteuid() != 0, "mounts a small file system, which only root may")
     def test_check_warns_of_a_small_disk(self):
         self.out.mkdir()
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=50m", "none", str(self.out)]).returncode != 0:
@@ -687,7 +687,7 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("No such file or directory", stderr)
         self.assertNotIn("disk", stderr)
 
-    @unittest.skipIf(os.geteuid() != 0, "a small file system needs root")
+    @unittest.skipIf(os.geteuid() != 0, "mounts a small file system, which only root may")
     def test_a_full_disk_ends_the_run_with_what_fits(self):
         self.out.mkdir()
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "none", str(self.out)]).returncode != 0:
