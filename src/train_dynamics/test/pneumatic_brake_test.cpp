@@ -398,7 +398,6 @@ TEST(PneumaticBrake, ARemoteLocomotiveThatHearsNothingFeedsAgainstTheDriver) {
   params.sources.push_back(remote);
   Train heard(params, 100, 13.0);
   params.sources[1].radio_lost_from_s = 0.0;
-  params.sources[1].radio_lost_to_s = 1e6;
   Train lost(params, 100, 13.0);
   for (Train* train : {&heard, &lost}) {
     train->brake.Command(Apply(1.0, 100.0));

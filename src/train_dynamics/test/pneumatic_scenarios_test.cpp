@@ -177,8 +177,8 @@ TEST(Scenario, HoseParted) {
 
 TEST(Scenario, DistributedPowerRadioLoss) {
   const Recorded lost = Simulated("distributed_power_radio_loss");
-  const Recorded heard =
-      Simulated("distributed_power_radio_loss", {"brake.sources[1].radio_lost_from_s=1000"});
+  const Recorded heard = Simulated("distributed_power_radio_loss", {"brake.sources[1].radio_lost_from_s=1000",
+                                                                    "brake.sources[1].radio_lost_to_s=2000"});
   EXPECT_LT(lost.cylinder_pa[lost.At(30.0)][110], 0.3 * heard.cylinder_pa[heard.At(30.0)][110]);
   EXPECT_EQ(lost.InEmergency(100.0), 0);
   // Once its valve has lapped, 45 s after the loss, the application reaches the tail.
@@ -315,6 +315,10 @@ TEST(Scenario, OfAPneumaticBrakeIsRefused) {
   ExpectRefused({"brake.closed_angle_cocks=[150]"}, "must be in [1, 149]");
   ExpectRefused({"brake.parted_hoses=[{behind_vehicle: 150, time_s: 1}]"}, "must be in [1, 149]");
   ExpectRefused({"brake.sources[0].vehicle=151"}, "sources[0].vehicle must be in [1, 150]");
+  const std::string sources = "brake.sources=[{name: a, vehicle: 1}, {name: b, vehicle: -1, kind: remote, ";
+  ExpectRefused({sources + "radio_lost_to_s: 9}]"}, "radio_lost_to_s needs radio_lost_from_s");
+  ExpectRefused({sources + "radio_lost_from_s: 9, radio_lost_to_s: 9}]"},
+                "radio_lost_to_s must be > radio_lost_from_s");
   ExpectRefused({"brake.equipment=[{from: 1, to: 2, valve: abc}]"}, "there is no \"abc\"");
   ExpectRefused({"brake.equipment=[{from: 1, to: 5}, {from: 5, to: 6}]"},
                 "vehicle 5 is in brake.equipment[0], too");

@@ -32,6 +32,8 @@ const std::pair<const char*, const char*> kMade[] = {
     {"commands.vehicles", "[1, -1]"},
     {"commands.pressure_kpa", "200"},
     {"commands.group", "helper"},
+    {"brake.sources.radio_lost_from_s", "30"},
+    {"brake.sources.radio_lost_to_s", "90"},
     {"driver.speed_kmh", "60"},
     {"driver.stops.position_m", "12000"},
     {"consist.external", "wagon_003"},

@@ -217,6 +217,30 @@ class Examples(unittest.TestCase):
                 self.assertLess(abs(energy["residual_j"]), 1e-4 * scale)
                 self.assertIsNone(summary["left_route_s"])
 
+    def test_what_is_resolved_can_be_read_again(self):
+        """A run's config.yaml is such a text: resume, verify and wagon nodes read it. Every scenario, and every part in one."""
+        scenarios = [(file, []) for file in sorted((CONFIG / "scenarios").glob("*.yaml"))]
+        for folder, scenario, key in (
+            ("brakes", "emergency_ab", "brake"),
+            ("couplers", "emergency_ab", "train.connection"),
+            ("vehicles", "single_wagon_stop", "train.consist[0].vehicle"),
+            ("trains", "single_wagon_stop", "train"),
+            ("tracks", "single_wagon_stop", "track"),
+        ):
+            for part in sorted((CONFIG / folder).glob("*.yaml")):
+                settings = ["--set", f"{key}={part.stem}", "--set", "model=ltd", "--set", "detail_vehicles=[]"]
+                scenarios.append((CONFIG / "scenarios" / f"{scenario}.yaml", settings))
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "resolved.yaml"
+            for scenario, settings in scenarios:
+                with self.subTest(f"{scenario.stem} {settings[:2]}"):
+                    resolved = train_sim("resolve", scenario, *settings)
+                    self.assertEqual(0, resolved.returncode, resolved.stderr)
+                    file.write_text(resolved.stdout)
+                    again = train_sim("resolve", file)
+                    self.assertEqual(0, again.returncode, again.stderr)
+                    self.assertEqual(resolved.stdout, again.stdout)
+
 
 if __name__ == "__main__":
     os.environ.pop("TRAIN_BRAKE_CONFIG", None)

@@ -290,9 +290,7 @@ void PneumaticBrake::Command(const BrakeCommand& command) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const PipeSourceParams& p = params_.sources[i];
     if (!p.commands.empty()) continue;
-    if (p.kind != PipeSourceKind::kDriver && command.time_s >= p.radio_lost_from_s &&
-        command.time_s < p.radio_lost_to_s)
-      continue;
+    if (p.RadioIsLost(command.time_s)) continue;
     if (all_ecp_ && command.kind == BrakeCommandKind::kApply) continue;  // the pipe stays charged
     Send(sources_[i], command.time_s, p.radio_delay_s, command);
   }
@@ -375,8 +373,8 @@ void PneumaticBrake::StepSource(int i) {
     // A remote valve that has heard nothing for so long laps: it feeds less and less, or the end of its flow would be a fall
     // of the pipe beside it that is an emergency's.
     double lapped_s = 0.0;
-    if (p.kind == PipeSourceKind::kRemote && now_s < p.radio_lost_to_s)
-      lapped_s = Max(0.0, now_s - p.radio_lost_from_s - kRadioPatience);
+    if (p.kind == PipeSourceKind::kRemote && p.RadioIsLost(now_s))
+      lapped_s = Max(0.0, now_s - *p.radio_lost_from_s - kRadioPatience);
     const double wanted = kAtmospherePa + source.equalising_pa - kLapRate * lapped_s;
     const double error = wanted - pressure;
     const bool applied = source.goal_pa < params_.charged_pressure_kpa * 1e3;

@@ -94,9 +94,15 @@ struct PipeSourceParams {
   double radio_delay_s = 0.0;
   bool two_way = true;
   double opening_mm = 19.0;
-  double radio_lost_from_s = 1e9;
-  double radio_lost_to_s = 1e9;
+  std::optional<double> radio_lost_from_s;  ///< none: the radio is never lost
+  std::optional<double> radio_lost_to_s;    ///< none: it does not come back
   std::vector<BrakeCommand> commands;
+
+  /// Whether a command given at that time does not arrive.
+  bool RadioIsLost(double time_s) const {
+    return kind != PipeSourceKind::kDriver && radio_lost_from_s && time_s >= *radio_lost_from_s &&
+           (!radio_lost_to_s || time_s < *radio_lost_to_s);
+  }
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -113,9 +119,16 @@ struct PipeSourceParams {
       v.Number("radio_delay_s", radio_delay_s, Range{0.0, 600.0, false, false},
                "from the driver's command to its arrival here");
       v.Number("radio_lost_from_s", radio_lost_from_s, kNonNegative,
-               "commands given from here on, up to radio_lost_to_s, do not arrive");
+               "commands given from here on, up to radio_lost_to_s, do not arrive; not given: the radio is "
+               "never lost");
       v.Number("radio_lost_to_s", radio_lost_to_s, kNonNegative,
-               "end of the loss of radio; a remote locomotive's valve laps 45 s after its beginning [A]");
+               "end of the loss of radio; not given: it does not come back. A remote locomotive's valve laps "
+               "45 s after "
+               "its beginning [A]");
+      v.Check(!radio_lost_to_s || radio_lost_from_s, "radio_lost_to_s", "needs radio_lost_from_s",
+              {"radio_lost_from_s"});
+      v.Check(!radio_lost_to_s || !radio_lost_from_s || *radio_lost_to_s > *radio_lost_from_s,
+              "radio_lost_to_s", "must be > radio_lost_from_s", {"radio_lost_from_s"});
     }
     if (kind == PipeSourceKind::kEndOfTrain) {
       v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only tells");
