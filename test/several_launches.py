@@ -214,6 +214,47 @@ class SeveralLaunches(LaunchTest):
         self.assertEqual(0, code, log)
         self.assertIn("were on the ROS master before, and are used: record", log)
 
+    def test_an_exit_status_file_that_cannot_be_written_is_told(self):
+        status = self.folder / "status"
+        link = self.folder / "link"
+        link.symlink_to(status)
+        run = f"_scenario:={SHORT_TRAIN}", "_model:=ltd", "_ranks:=0"
+        for unusable, why in (
+            (self.folder / "absent" / "status", "No such file or directory"),
+            (self.folder, "is not a regular file"),
+            ("/dev/stdout", "(is not a regular file|cannot make canonical path)"),
+        ):
+            code, log = self.node(*run, "_set:=duration_s=0.1", f"_exit_status_file:={unusable}")
+            self.assertEqual(2, code, log)
+            self.assertRegex(log, f"exit_status_file: .*{why}.*nothing was started")
+        # What an earlier run left is not taken for this one's, and a link stays one.
+        status.write_text("0\n")
+        code, log = self.node("_scenario:=absent.yaml", "_ranks:=0", f"_exit_status_file:={link}")
+        self.assertEqual((2, "2\n"), (code, status.read_text()), log)
+        self.assertTrue(link.is_symlink())
+        # A folder that goes away during the run.
+        folder = self.folder / "gone"
+        folder.mkdir()
+        paced = subprocess.Popen(
+            ["rosrun", "ltd_master", "ltd_master", "__ns:=/train", "__name:=master", *run, "_set:=duration_s=3"]
+            + ["_real_time_factor:=1", f"_exit_status_file:={folder}/status"],
+            env=self.master.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.wait_for_service("/train/master/pause")
+        folder.rmdir()
+        log = paced.communicate(timeout=60)[0]
+        self.assertEqual(1, paced.returncode, log)
+        self.assertIn(f"cannot write {folder}/status", log)
+
+    def test_a_number_of_nodes_is_a_whole_one(self):
+        for nodes in "0", "-1", "1.5":
+            launch = self.launch("run", f"nodes:={nodes}")
+            self.assertEqual(2, launch.ended(), launch.log())
+            self.assertIn(f"parameter nodes must be auto or a whole number >= 1, got the text '{nodes}'", launch.log())
+
     def test_nodes_that_are_not_used_are_told(self):
         launch = self.launch("run", "model:=ltd", "nodes:=4")
         self.assertEqual(0, launch.ended(), launch.log())

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -16,6 +18,7 @@
 #include "train_node/node_parameters.h"
 #include "train_node/occupant.h"
 #include "train_node/start.h"
+#include "train_results/plain_file.h"
 #include "train_run/exit_code.h"
 #include "train_run/interrupt.h"
 
@@ -65,6 +68,22 @@ void TellStaleParameters(const train_node::NodeParameters& parameters,
       fmt::format("{}", fmt::join(stale, ", ")).c_str(), ros::this_node::getName().c_str());
 }
 
+/// The file that gets the exit code, through links. What an earlier run left there is removed, so that it is not taken for
+/// this one's. Throws std::invalid_argument if it cannot be written: before the run, not after it.
+std::string MakeReady(const std::string& exit_status_file) {
+  namespace fs = std::filesystem;
+  try {
+    const fs::path file = fs::weakly_canonical(train_node::ExpandHome(exit_status_file));
+    if (fs::exists(file) && !fs::is_regular_file(file))
+      throw std::runtime_error(file.string() + " is not a regular file");
+    train_results::WriteFile(file, "");
+    fs::remove(file);
+    return file;
+  } catch (const std::runtime_error& e) {
+    throw std::invalid_argument(std::string("exit_status_file: ") + e.what() + "; nothing was started");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -74,12 +93,13 @@ int main(int argc, char** argv) {
   if (!WaitForRosMaster()) return train_run::kInterrupted;
   train_node::NodeParameters parameters(ros::this_node::getName());
   // First of all parameters: that one of the others is wrong is told there, too.
-  std::string exit_status_file = parameters.Text("exit_status_file", "");
+  const std::string wanted_status_file = parameters.Text("exit_status_file", "");
+  std::string exit_status_file;
   std::optional<ros::NodeHandle> own;  // the node and its log end with the last handle: this one
   int exit_code = train_run::kFailure;
   try {
     train_node::EnterCallerFolder();
-    exit_status_file = train_node::ExpandHome(exit_status_file);
+    if (!wanted_status_file.empty()) exit_status_file = MakeReady(wanted_status_file);
     RefuseTakenName();
     own.emplace("~");
     TellStaleParameters(parameters, arguments);
@@ -100,6 +120,7 @@ int main(int argc, char** argv) {
       train_results::WriteFile(exit_status_file, std::to_string(exit_code) + "\n");
     } catch (const std::exception& e) {
       ROS_FATAL("%s", train_console::Presentable(e.what()).c_str());
+      if (exit_code == train_run::kSuccess) exit_code = train_run::kFailure;
     }
   }
   return exit_code;

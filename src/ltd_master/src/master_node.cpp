@@ -82,6 +82,9 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.vehicles = parameters.Integer("vehicles", 0, 0);
   options.ranks = parameters.Integer("ranks", 0, 0);
   options.nodes = parameters.Words("nodes");
+  if (options.nodes.find_first_not_of("0123456789") != std::string::npos ? options.nodes != "auto"
+                                                                         : options.nodes == "0")
+    parameters.Complain("nodes", "must be auto or a whole number >= 1");
   const std::string settings = parameters.Text("set", "");
   const std::string model = parameters.Text("model", "");
   const double interval_s = parameters.NonNegative("exchange_interval_s", 0.0);
