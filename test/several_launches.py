@@ -249,16 +249,22 @@ class SeveralLaunches(LaunchTest):
         self.assertEqual(1, paced.returncode, log)
         self.assertIn(f"cannot write {folder}/status", log)
 
-    def test_a_number_of_nodes_is_a_whole_one(self):
-        for nodes in "0", "-1", "1.5":
-            launch = self.launch("run", f"nodes:={nodes}")
+    def test_numbers_of_nodes_and_threads_are_whole_and_refused_at_once(self):
+        for name, value, rule in (
+            ("nodes", "0", "must be auto or a whole number >= 1, got the text '0'"),
+            ("nodes", "-1", "must be auto or a whole number >= 1, got the text '-1'"),
+            ("nodes", "1.5", "must be auto or a whole number >= 1, got the text '1.5'"),
+            ("threads", "0", "must be >= 1, got 0"),
+        ):
+            launch = self.launch(name + value, f"{name}:={value}", "startup_timeout:=0")
             self.assertEqual(2, launch.ended(), launch.log())
-            self.assertIn(f"parameter nodes must be auto or a whole number >= 1, got the text '{nodes}'", launch.log())
+            self.assertIn(f"parameter {name} {rule}", launch.log())
 
     def test_nodes_that_are_not_used_are_told(self):
-        launch = self.launch("run", "model:=ltd", "nodes:=4")
+        launch = self.launch("run", "model:=ltd", "nodes:=4", "on_lost_driver:=hold")
         self.assertEqual(0, launch.ended(), launch.log())
         self.assertIn("nodes:=4 is not used", launch.log())
+        self.assertRegex(launch.log(), "on_lost_driver, .* are not used: there is no driver")
 
     def test_paths_are_those_of_the_caller(self):
         caller, home = self.folder / "caller", self.folder / "home"

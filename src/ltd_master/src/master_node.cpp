@@ -82,9 +82,11 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.vehicles = parameters.Integer("vehicles", 0, 0);
   options.ranks = parameters.Integer("ranks", 0, 0);
   options.nodes = parameters.Words("nodes");
-  if (options.nodes.find_first_not_of("0123456789") != std::string::npos ? options.nodes != "auto"
-                                                                         : options.nodes == "0")
+  const bool is_number = options.nodes.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_zero = !options.nodes.empty() && options.nodes.find_first_not_of('0') == std::string::npos;
+  if (is_zero || (!is_number && options.nodes != "auto"))
     parameters.Complain("nodes", "must be auto or a whole number >= 1");
+  parameters.Integer("threads", 1, 1);  // of the wagon nodes, which roslaunch would start again and again
   const std::string settings = parameters.Text("set", "");
   const std::string model = parameters.Text("model", "");
   const double interval_s = parameters.NonNegative("exchange_interval_s", 0.0);
@@ -189,6 +191,16 @@ void MasterNode::TellWhatIsNotUsed() const {
                        .c_str()
                  : "trains of the LTD models run in the master alone");
   }
+  const LockstepDriverOptions& driver = options_.driver;
+  const LockstepDriverOptions defaults;
+  if (driver.node.empty() &&
+      (driver.control_period_s != defaults.control_period_s || driver.deadline_s != defaults.deadline_s ||
+       driver.on_lost != defaults.on_lost || driver.sight_m != defaults.sight_m ||
+       driver.sees_couplers != defaults.sees_couplers))
+    ROS_WARN(
+        "control_period, driver_timeout, on_lost_driver, driver_sight and driver_sees_couplers are not used: "
+        "there is no "
+        "driver in lockstep (driver:=NODE)");
   const std::string& folder = options_.output.folder.empty() ? options_.resume : options_.output.folder;
   if (folder.empty()) {
     ROS_INFO("no results are kept (out:=FOLDER keeps them)");
