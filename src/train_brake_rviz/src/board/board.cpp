@@ -237,7 +237,7 @@ void Board::DrawTrain(Drawing& drawing, const Snapshot& snapshot, const Selectio
                                                  consist_.vehicle(vehicles() - 1).length_m);
   strip.DrawTrack(drawing, abscissa);
   strip.DrawVehicles(drawing, abscissa, edges, Colors(snapshot, selection));
-  for (const int i : consist_.locomotives) strip.DrawLocomotive(drawing, abscissa, edges[i], edges[i + 1]);
+  strip.DrawLocomotives(drawing, abscissa, edges, consist_.locomotives);
   const auto followed = static_cast<size_t>(selection.vehicle);
   strip.DrawZoom(drawing, abscissa, edges[followed], edges[followed + 1], layout::kCloseUp);
 

@@ -68,17 +68,24 @@ void TrainStrip::DrawVehicles(Drawing& drawing, const Abscissa& abscissa, const 
   }
 }
 
-void TrainStrip::DrawLocomotive(Drawing& drawing, const Abscissa& abscissa, double front_m,
-                                double rear_m) const {
-  const double left = abscissa(front_m), right = abscissa(rear_m), middle = 0.5 * (left + right);
-  const double roof = Rail(abscissa, 0.5 * (front_m + rear_m)) + kVehicleHeight;
+void TrainStrip::DrawLocomotives(Drawing& drawing, const Abscissa& abscissa,
+                                 const std::vector<double>& edge_m,
+                                 const std::vector<int>& locomotives) const {
+  constexpr double kGap = 0.5;  // between two names
   const std::string name = "locomotive";
   const double half = 0.5 * layout::kSmallText * TextWidth(name);
+  double free = area_.left;
   drawing.On(Layer::kFront);
-  drawing.Triangle({middle - 0.7, roof + 1.1}, {middle, roof + 0.1}, {middle + 0.7, roof + 1.1},
-                   palette::kDark);
-  drawing.Write({std::max(middle, area_.left + half), roof + 2.1}, Align::kCentre, layout::kSmallText, name,
-                palette::kDark);
+  for (const int i : locomotives) {
+    const double middle_m = 0.5 * (edge_m[i] + edge_m[i + 1]);
+    const double middle = abscissa(middle_m), roof = Rail(abscissa, middle_m) + kVehicleHeight;
+    drawing.Triangle({middle - 0.7, roof + 1.1}, {middle, roof + 0.1}, {middle + 0.7, roof + 1.1},
+                     palette::kDark);
+    const double centre = std::max(middle, area_.left + half);
+    if (centre - half < free) continue;
+    drawing.Write({centre, roof + 2.1}, Align::kCentre, layout::kSmallText, name, palette::kDark);
+    free = centre + half + kGap;
+  }
 }
 
 void TrainStrip::DrawZoom(Drawing& drawing, const Abscissa& abscissa, double front_m, double rear_m,

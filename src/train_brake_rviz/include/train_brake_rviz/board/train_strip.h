@@ -20,8 +20,11 @@ class TrainStrip {
   /// @param color   [vehicle]
   void DrawVehicles(Drawing& drawing, const Abscissa& abscissa, const std::vector<double>& edge_m,
                     const std::vector<Color>& color) const;
-  /// A roof in dark, and its name, over a vehicle that is not like the others.
-  void DrawLocomotive(Drawing& drawing, const Abscissa& abscissa, double front_m, double rear_m) const;
+  /// A mark over vehicles that are not like the others, and their name where it does not lie over that of one in front.
+  /// @param edge_m       see VehicleEdges
+  /// @param locomotives  their indices, ascending
+  void DrawLocomotives(Drawing& drawing, const Abscissa& abscissa, const std::vector<double>& edge_m,
+                       const std::vector<int>& locomotives) const;
   /// Outline of one vehicle, and lines from there to a close-up of it.
   void DrawZoom(Drawing& drawing, const Abscissa& abscissa, double front_m, double rear_m,
                 const Rectangle& close_up) const;
