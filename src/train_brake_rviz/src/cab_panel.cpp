@@ -18,6 +18,7 @@ using train_brake_msgs::DriverView;
 using train_brake_msgs::RunStatus;
 
 constexpr double kKmhPerMps = 3.6;
+constexpr const char* kWidestValue = "-88.8 \u2030; no change in sight";
 constexpr double kFirstReduction = 50.0, kFullReduction = 200.0;  // [kPa]
 
 QString Number(double value, int decimals) { return QString::number(value, 'f', decimals); }
@@ -78,11 +79,13 @@ CabPanel::CabPanel(QWidget* parent) : rviz::Panel(parent) {
   emergency_->setStyleSheet("QPushButton:enabled { background: #d55e00; color: white; font-weight: bold }");
   column->addWidget(emergency_);
   handle_ = AddLine("brake handle", "Handle");
-  pressures_ = AddLine("pressures", "Pressures");
+  pipe_ = AddLine("brake pipe", "BrakePipe");
+  cylinder_ = AddLine("cylinder; mean", "Cylinder");
   forces_ = AddLine("in-train forces", "Forces");
   message_ = new QLabel("no train is running");
   message_->setObjectName("Message");
   message_->setWordWrap(true);
+  message_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   column->addWidget(message_);
   column->addStretch(1);
 
@@ -109,6 +112,9 @@ QLabel* CabPanel::AddLine(const QString& label, const QString& name) {
   auto* value = new QLabel("-");
   value->setObjectName(name);
   value->setAlignment(Qt::AlignRight);
+  // No text makes the panel wider, and so the train beside it smaller.
+  value->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  value->setMinimumWidth(value->fontMetrics().horizontalAdvance(kWidestValue));
   row->addWidget(value, 1);
   return value;
 }
@@ -169,8 +175,8 @@ void CabPanel::ShowView(const DriverView& view) {
   handle_->setText(view.emergency             ? QString("EMERGENCY")
                    : view.reduction_kpa > 0.0 ? "reduction " + KiloPascal(view.reduction_kpa)
                                               : QString("released"));
-  pressures_->setText("pipe " + KiloPascal(view.brake_pipe_kpa) + ", cylinder " +
-                      KiloPascal(view.cylinder_kpa) + ", mean " + KiloPascal(view.mean_cylinder_kpa));
+  pipe_->setText(KiloPascal(view.brake_pipe_kpa));
+  cylinder_->setText(KiloPascal(view.cylinder_kpa) + "; " + KiloPascal(view.mean_cylinder_kpa));
 }
 
 void CabPanel::ShowStatus(const RunStatus& status) {

@@ -29,6 +29,7 @@ class CabPanelTest : public testing::Test {
     view_subscriber_ = node_.subscribe<DriverView>(
         "/train/live/driver_view", 1, [this](const DriverView::ConstPtr& message) { view_ = *message; });
     panel_.show();
+    width_before_ = panel_.sizeHint().width();
   }
   void SetUp() override {
     ASSERT_TRUE(Comes([this] {
@@ -67,6 +68,7 @@ class CabPanelTest : public testing::Test {
   std::vector<GivenCommand> given_;
   DriverView view_;
   CabPanel panel_;
+  int width_before_ = 0;  ///< that the panel asks for before anything is shown [pixel]
 };
 
 TEST_F(CabPanelTest, ShowsWhatADriverSees) {
@@ -74,9 +76,26 @@ TEST_F(CabPanelTest, ShowsWhatADriverSees) {
       Comes([this] { return Text("Limit") == "60 km/h" && Text("Ahead").startsWith("20 km/h in "); }));
   EXPECT_TRUE(
       Comes([this] { return Text("Speed") == QString::number(3.6 * view_.speed_mps, 'f', 1) + " km/h"; }));
-  EXPECT_TRUE(Comes([this] { return Text("Pressures").startsWith("pipe not computed, cylinder "); }));
+  EXPECT_TRUE(
+      Comes([this] { return Text("BrakePipe") == "not computed" && Text("Cylinder") == "0 kPa; 0 kPa"; }));
   EXPECT_TRUE(Comes([this] { return Text("Forces").endsWith(" kN"); }));
   EXPECT_TRUE(Comes([this] { return Text("Message").isEmpty(); }));
+}
+
+TEST_F(CabPanelTest, NoTextMakesItWiderOrIsCut) {
+  for (const char* name :
+       {"Limit", "Ahead", "Grade", "Effort", "Handle", "BrakePipe", "Cylinder", "Forces"}) {
+    EXPECT_TRUE(Comes([&] { return Text(name) != "-"; })) << name;
+    const auto& value = Find<QLabel>(name);
+    EXPECT_LE(value.fontMetrics().horizontalAdvance(value.text()), value.width()) << name;
+  }
+  EXPECT_EQ(width_before_, panel_.sizeHint().width());
+  Find<QDoubleSpinBox>("Reduction").setMaximum(5000.0);
+  const int width = panel_.sizeHint().width();
+  Find<QDoubleSpinBox>("Reduction").setValue(5000.0);
+  Find<QPushButton>("Apply").click();
+  EXPECT_TRUE(Comes([this] { return !Text("Message").isEmpty(); }));
+  EXPECT_EQ(width, panel_.sizeHint().width());
 }
 
 TEST_F(CabPanelTest, LeversAreObeyed) {

@@ -41,7 +41,7 @@ class CabPanel : public rviz::Panel {
   QSlider* AddLever(const QString& label, const QString& name, const std::string& kind);
   void SetLever(QSlider* lever, double notch, double notches);
 
-  QLabel *speed_, *limit_, *ahead_, *grade_, *effort_, *handle_, *pressures_, *forces_, *message_;
+  QLabel *speed_, *limit_, *ahead_, *grade_, *effort_, *handle_, *pipe_, *cylinder_, *forces_, *message_;
   QSlider *throttle_, *dynamic_brake_;
   QDoubleSpinBox* reduction_;
   QPushButton *apply_, *release_, *emergency_;
