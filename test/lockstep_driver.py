@@ -8,6 +8,7 @@ import signal
 import subprocess
 
 import rosunit
+from train_brake_msgs.srv import DriveRequest
 
 from launches import Launch, LaunchTest, train_sim, wait_until
 
@@ -18,10 +19,10 @@ EXCHANGES_PER_PERIOD = 50  # of 0.1 s
 
 
 class LockstepDriver(LaunchTest):
-    def driver(self, *command):
-        """Starts a driver's node, /train/driver, and waits for its service."""
+    def driver(self, *command, namespace="/train"):
+        """Starts a driver's node, /train/driver."""
         node = subprocess.Popen(
-            [*command, "__ns:=/train", "__name:=driver"],
+            [*command, f"__ns:={namespace}", "__name:=driver"],
             env=self.master.environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -179,13 +180,22 @@ class LockstepDriver(LaunchTest):
         self.assertEqual(whole.summary()["state_digest"], rest.summary()["state_digest"])
 
     def test_who_speaks_otherwise_is_refused(self):
-        for fault, words in (("version", "the driver /train/driver version 2"), ("md5sum", "cannot be asked")):
+        for fault, words in (
+            ("version", f"the driver /train/driver version {DriveRequest.PROTOCOL_VERSION + 1}"),
+            ("md5sum", "cannot be asked"),
+        ):
             driver = self.faulty(fault)
             launch = self.run_train(fault, 2, code=4)
             self.assertIn(words, launch.log())
             self.end(driver)
         launch = self.run_train("none", 2, "startup_timeout:=1", code=4)
-        self.assertRegex(launch.log(), "the driver /train/driver is missing after .*drive has not")
+        self.assertRegex(launch.log(), "the driver /train/driver is missing after .*drive is not advertised")
+        stray = self.driver("rosrun", "train_brake_examples", "hold_speed", namespace="/other")
+        self.assertTrue(wait_until(lambda: "/other/driver/drive" in self.master.services(), 30))
+        launch = self.run_train("elsewhere", 2, "startup_timeout:=1", code=4)
+        self.assertIn("but /other/driver/drive is: for that driver say driver:=/other/driver", launch.log())
+        self.run_train("there", 2, "driver:=/other/driver")
+        stray.kill()
         launch = self.run_train("period", 2, "control_period:=0.003", code=2)
         self.assertIn("control_period_s must be a multiple of the exchange interval, 0.002 s, got 0.003", launch.log())
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <ros/console.h>
+#include <ros/master.h>
 #include <ros/names.h>
 #include <ros/service_manager.h>
 #include <ros/service_traits.h>
+#include <ros/this_node.h>
 
 #include <chrono>
 #include <cmath>
@@ -35,6 +37,25 @@ const char* ConsequenceOf(OnLostDriver on_lost) {
   return "The run ends.";
 }
 
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Who may have been started in another namespace or under another name, as a clause; empty: nobody.
+std::string ServedElsewhere() {
+  const std::string end = "/drive";
+  XmlRpc::XmlRpcValue request, response, state;  // publishers, subscribers, services; of each [name, [nodes]]
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false) || state.size() < 3) return "";
+  for (int i = 0; i < state[2].size(); ++i) {
+    const std::string service = state[2][i][0];
+    if (EndsWith(service, end))
+      return fmt::format(", but {} is: for that driver say driver:={}", service,
+                         service.substr(0, service.size() - end.size()));
+  }
+  return "";
+}
+
 }  // namespace
 
 LockstepDriver::LockstepDriver(LockstepDriverOptions options, std::uint64_t run_id,
@@ -58,6 +79,7 @@ void LockstepDriver::Connect() {
   const auto start = std::chrono::steady_clock::now();
   double next_report_s = kSecondsPerReport;
   while (true) {
+    bool is_advertised = true;
     std::string why_not;
     std::string host;
     std::uint32_t port = 0;
@@ -67,7 +89,8 @@ void LockstepDriver::Connect() {
                                               kHandshake);
         return;
       }
-      why_not = WhyNotFound();
+      is_advertised = false;
+      why_not = ros::master::check() ? "is not advertised" : WhyNotFound();
     } catch (const LinkRefused& e) {
       throw DriverFailure(fmt::format("the driver {} cannot be asked: {}", options_.node, e.what()));
     } catch (const LinkError& e) {
@@ -75,11 +98,12 @@ void LockstepDriver::Connect() {
     }
     if (options_.interrupted()) throw WaitInterrupted();
     const double waited_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (options_.start_timeout_s > 0.0 && waited_s > options_.start_timeout_s) {
-      throw DriverFailure(fmt::format("the driver {} is missing after {:.0f} s: its service {} {}",
-                                      options_.node, waited_s, service, why_not));
-    }
-    if (waited_s > next_report_s) {
+    const bool in_vain = options_.start_timeout_s > 0.0 && waited_s > options_.start_timeout_s;
+    if (in_vain || waited_s > next_report_s) {
+      if (!is_advertised && ros::master::check()) why_not += ServedElsewhere();
+      if (in_vain)
+        throw DriverFailure(fmt::format("the driver {} is missing after {:.0f} s: its service {} {}",
+                                        options_.node, waited_s, service, why_not));
       ROS_WARN("waiting for %.0f s already for the driver %s: its service %s %s", waited_s,
                options_.node.c_str(), service.c_str(), why_not.c_str());
       next_report_s += kSecondsPerReport;
