@@ -38,10 +38,12 @@ publisher = rospy.Publisher("/train/driver/command", DriverCommand, queue_size=1
 while publisher.get_num_connections() == 0: time.sleep(0.05)
 SOUND = (lambda: dict(kind="throttle", notch=seed.randint(0, 8)),
          lambda: dict(kind="apply", reduction_kpa=seed.uniform(50, 120)),
-         lambda: dict(kind="release"))
+         lambda: dict(kind="release"),
+         lambda: dict(kind="friction", from_m=seed.uniform(0, 20), to_m=seed.uniform(20, 90),
+                      friction_coefficient=seed.uniform(0.02, 0.1)))
 WRONG = (dict(kind="apply", reduction_kpa=nan), dict(kind="throttle", notch=nan), dict(kind="throttle", notch=-1),
-         dict(kind="throttle", notch=1, vehicles=[99]), dict(kind="fly"), dict(kind="apply", reduction_kpa=9e9),
-         dict(kind="throttle", notch=1e400))
+         dict(kind="throttle", notch=1, vehicles=[99]), dict(kind="fly"), dict(kind="friction", to_m=1e400),
+         dict(kind="friction", to_m=1, friction_coefficient=2))
 for wrong in WRONG + WRONG:
     time.sleep(seed.uniform(0, 0.4))
     publisher.publish(DriverCommand(**seed.choice(SOUND)()))
@@ -155,14 +157,62 @@ class LiveCommands(LaunchTest):
         self.assertEqual(0, launch.ended(200), launch.log())
         refusals = re.findall("a command on driver/command is refused: (.*)", launch.log())
         self.assertEqual(28, len(refusals), launch.log())
-        for words in ("reduction_kpa must be", "notch must be >= 0, got nan", "got -1", "kind must be one of"):
+        for words in (
+            "reduction_kpa must be",
+            "notch must be >= 0, got nan",
+            "got -1",
+            "kind must be one of",
+            "to_m must",
+        ):
             self.assertTrue(any(words in refusal for refusal in refusals), f"{words}: {refusals}")
         summary = launch.summary()
         self.assertEqual(28, len(summary["commands"]))
         self.assertGreater(len({c["exchange"] for c in summary["commands"]}), 10)
-        self.assertEqual(3, len({c["command"].split()[0] for c in summary["commands"]}))
+        self.assertEqual(4, len({c["command"].split()[0] for c in summary["commands"]}))
         self.assert_verified(launch.out, summary["state_digest"])
         self.assertEqual(summary["state_digest"], train_sim(scenario=launch.out / "replay.yaml")["state_digest"])
+
+    def test_a_patch_of_rail_that_comes_live_is_as_one_of_the_track(self):
+        patch = {"from_m": 10.0, "to_m": 60.0, "friction_coefficient": 0.03}
+        settings = ["duration_s=4", "record_interval_s=0.02", "ledger_interval_s=1", "detail_vehicles=[]"]
+        launch = Launch(
+            self.master,
+            self.folder,
+            ("train_brake", "train.launch"),
+            f"scenario:={HERE / 'short_train.yaml'}",
+            "vehicles:=6",
+            "nodes:=2",
+            "real_time_factor:=1",
+            "start_paused:=true",
+            "set:=" + " ".join(settings),
+        )
+        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
+        for wrong, words in (
+            ({"to_m": 10.0}, "to_m must be greater than from_m"),
+            ({"from_m": float("nan")}, "from_m must be finite, got "),
+            ({"friction_coefficient": -0.1}, "friction_coefficient must be > 0"),
+            ({"friction_coefficient": float("nan")}, "friction_coefficient must be > 0"),
+        ):
+            self.assertIn(words, self.give(kind="friction", **{**patch, **wrong}))
+        self.assertIn("success: True", self.give(kind="friction", **patch))
+        self.tool("rosservice", "call", "/train/master/resume")
+        launch.saw(r" 1\.\d+ of 4 s", 30)
+        subprocess.run(["kill", "-9", str(self.master.process_of("wagon_004"))], check=True)
+        self.assertEqual(0, launch.ended(120), launch.log())  # who takes its place has the patch, too
+        summary = launch.summary()
+        given = [c for c in summary["commands"] if c["live"]]
+        self.assertEqual(["friction 0.03 from 10 to 60 m"], [c["command"] for c in given])
+        self.assertEqual(0, given[0]["exchange"])
+        words = [word for s in settings for word in ("--set", s)]
+        of_track = train_sim(*words, "--set", "track={name: slippery, friction_patches: [" + json.dumps(patch) + "]}")
+        self.assertEqual(of_track["state_digest"], summary["state_digest"])
+        self.assertNotEqual(train_sim(*words)["state_digest"], summary["state_digest"])
+        self.assertEqual(summary["state_digest"], train_sim(scenario=launch.out / "replay.yaml")["state_digest"])
+        self.assert_verified(launch.out, summary["state_digest"])
+        branch = self.folder / "branch"
+        train_sim("--resume", str(launch.out), "--set", "duration_s=5", "--out", str(branch), scenario=None)
+        longer = train_sim("--set", "duration_s=5", scenario=launch.out / "replay.yaml")
+        self.assertEqual(longer["state_digest"], json.loads((branch / "summary.json").read_text())["state_digest"])
 
     def test_keys_and_joystick_of_a_cab(self):
         launch = Launch(

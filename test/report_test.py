@@ -456,6 +456,7 @@ class ReportTest(unittest.TestCase):
             "exchange_interval_s=0.002",
             "--set",
             "commands=[{time_s: 0, kind: throttle, notch: 8}, {time_s: 60, kind: throttle, notch: 3}, "
+            "{time_s: 100, kind: friction, from_m: 9000, to_m: 9100, friction_coefficient: 0.2}, "
             "{time_s: 150, kind: throttle, notch: 0}]",
         )
         page = self.page(run)
@@ -467,6 +468,10 @@ class ReportTest(unittest.TestCase):
         at = Run(run, None)
         of_time = dict(zip(at.recording.state.time_s.round(3), route.notches(at)))
         self.assertEqual([8, 8, 3, 3, 0], [of_time[t] for t in (0.0, 59.9, 60.0, 149.9, 150.0)])
+        self.assertEqual(
+            [(0, "throttle"), (60, "throttle"), (100, "friction"), (150, "throttle")],
+            [(command["time_s"], command["kind"]) for command in at.commands],
+        )
 
         # Percentiles and energy per tonne and km by the records themselves.
         table = dict(route.quantities(group_of(run)).table.rows)

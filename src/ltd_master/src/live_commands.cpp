@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "train_dynamics/train/ranks.h"
 #include "train_results/conversions.h"
 
 namespace ltd_master {
@@ -13,10 +14,18 @@ using train_dynamics::DriverCommand;
 
 /// What a command breaks in a train, as a sentence; empty: nothing.
 std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioParams& scenario) {
-  if (!command.IsOfLocomotives() && !scenario.pressure_table.empty())
+  if (command.IsOfRail()) {
+    using train_dynamics::VehicleModel;
+    if (!scenario.Uses(VehicleModel::kTwoD) && !scenario.adhesion_limit &&
+        train_dynamics::ExternalRanks(scenario.train).empty())
+      return "kind friction changes nothing: the ltd model leaves out the rail's friction without "
+             "adhesion_limit";
+  }
+  if (!command.IsOfLocomotives() && !command.IsOfRail() && !scenario.pressure_table.empty())
     return "the pressures of the brake come from pressure_table: it obeys no command";
   const std::vector<BrokenRule> broken =
-      command.IsOfLocomotives()
+      command.IsOfRail() ? train_dynamics::JudgePatch(command.OfRail(), "command", scenario.track)
+      : command.IsOfLocomotives()
           ? train_dynamics::JudgeLocomotiveCommand(command.OfLocomotives(0.0), "command", scenario.train)
       : command.IsOfLocomotiveBrakes()
           ? train_dynamics::JudgeLocomotiveBrakeCommand(command.OfLocomotiveBrakes(0.0), "command",
@@ -45,12 +54,18 @@ DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message
 std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& message) {
   const DriverCommand command = Judge(message, 0);
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (command.IsOfRail()) {
+    if (patches_ >= train_dynamics::kMostPatchesOnTheWay)
+      throw std::invalid_argument("kind " + train_dynamics::RuleOfPatches());
+    ++patches_;
+  }
   received_.push_back({command, next_exchange_});
   return next_exchange_;
 }
 
-std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange) {
+std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange, std::size_t patches) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  patches_ = patches;
   if (next_exchange_ == 0) {  // a run that goes on from a checkpoint begins later
     for (Received& received : received_) received.exchange = exchange;
   }
@@ -59,6 +74,7 @@ std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange) {
   std::vector<DriverCommand> due;
   for (const Received& received : received_) {
     due.push_back(received.command);
+    patches_ += received.command.IsOfRail() ? 1 : 0;
     largest_latency_ = std::max(largest_latency_, exchange - received.exchange);
     ++count_;
   }

@@ -352,7 +352,7 @@ void MasterNode::Go(train_run::TrainRun& run) {
 
 void MasterNode::GiveCommands(train_run::TrainRun& run) {
   const std::uint64_t exchange = run.master().exchange();
-  for (const train_dynamics::DriverCommand& command : commands_.Take(exchange)) {
+  for (const train_dynamics::DriverCommand& command : commands_.Take(exchange, run.master().patches())) {
     try {
       run.Command(command);
     } catch (const std::invalid_argument& e) {

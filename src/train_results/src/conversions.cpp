@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "strict_config/writer.h"
 
@@ -137,6 +138,10 @@ void Convert(const train_dynamics::GivenCommand& given, double time_s,
   message.command.notch = given.command.IsOfLocomotives() ? given.command.notch : 0.0;
   const bool is_independent = given.command.kind == train_dynamics::DriverCommandKind::kIndependentBrake;
   message.command.pressure_kpa = is_independent ? given.command.pressure_kpa : 0.0;
+  const bool is_of_rail = given.command.IsOfRail();
+  message.command.from_m = is_of_rail ? given.command.from_m : 0.0;
+  message.command.to_m = is_of_rail ? given.command.to_m : 0.0;
+  message.command.friction_coefficient = is_of_rail ? given.command.friction_coefficient : 0.0;
   message.command.vehicles.assign(given.command.vehicles.begin(), given.command.vehicles.end());
   message.live = given.is_live;
 }
@@ -205,7 +210,22 @@ train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& m
       throw std::invalid_argument(fmt::format("pressure_kpa must be >= 0, got {}", message.pressure_kpa));
     command.pressure_kpa = message.pressure_kpa;
   }
-  if (!command.IsOfTrainBrake()) {
+  if (command.IsOfRail()) {
+    for (const auto& [name, at_m] : {std::pair{"from_m", message.from_m}, std::pair{"to_m", message.to_m}}) {
+      if (!std::isfinite(at_m))
+        throw std::invalid_argument(fmt::format("{} must be finite, got {}", name, at_m));
+    }
+    if (message.from_m >= message.to_m)
+      throw std::invalid_argument(
+          fmt::format("to_m must be greater than from_m, {}, got {}", message.from_m, message.to_m));
+    if (!(message.friction_coefficient > 0.0 && message.friction_coefficient <= 1.0))
+      throw std::invalid_argument(
+          fmt::format("friction_coefficient must be > 0 and <= 1, got {}", message.friction_coefficient));
+    command.from_m = message.from_m;
+    command.to_m = message.to_m;
+    command.friction_coefficient = message.friction_coefficient;
+  }
+  if (command.IsOfLocomotives() || command.IsOfLocomotiveBrakes()) {
     command.vehicles.assign(message.vehicles.begin(), message.vehicles.end());
     command.group = message.group;
     if (!command.group.empty() && !command.vehicles.empty())

@@ -68,7 +68,7 @@ TEST(Lists, HaveEveryArrayOfTheStateOfATrain) {
 }
 
 TEST(Lists, HaveEveryArrayOfARequestAndItsReply) {
-  Names names = {"coupler_force_n"};
+  Names names = {"coupler_force_n", "friction_patches"};  // of connections, of the rail
   train_dynamics::LoadArrays loads;
   train_dynamics::ForEachLoad(
       [&](const train_dynamics::LoadInfo& load, const auto&) { names.insert(load.name); }, loads);

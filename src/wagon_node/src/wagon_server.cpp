@@ -74,6 +74,36 @@ std::string Check(const char* name, const std::vector<double>& values, std::size
   return "";
 }
 
+using Patches = std::vector<train_dynamics::FrictionPatchParams>;
+
+/// Whether the patches of a request begin with those that have come before.
+bool BeginWith(const Patches& known, const std::vector<double>& numbers) {
+  if (numbers.size() < 3 * known.size()) return false;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const double* patch = &numbers[3 * i];
+    if (patch[0] != known[i].from_m || patch[1] != known[i].to_m ||
+        patch[2] != *known[i].friction_coefficient)
+      return false;
+  }
+  return true;
+}
+
+/// What is wrong with the patches of a request; empty: nothing.
+std::string CheckPatches(const Patches& known, const std::vector<double>& numbers) {
+  constexpr std::size_t kMost = 3 * train_dynamics::kMostPatchesOnTheWay;
+  if (numbers.size() % 3 != 0 || numbers.size() > kMost)
+    return "friction_patches has " + Text(numbers.size()) +
+           " values, expected three for each patch, at most " + Text(kMost);
+  if (!BeginWith(known, numbers)) return "friction_patches does not begin with those of the exchange before";
+  for (std::size_t at = 0; at < numbers.size(); at += 3) {
+    const double from_m = numbers[at], to_m = numbers[at + 1], friction = numbers[at + 2];
+    if (std::isfinite(from_m) && std::isfinite(to_m) && from_m < to_m && friction > 0.0 && friction <= 1.0)
+      continue;
+    return "friction_patches from [" + Text(at) + "] on is no patch of rail";
+  }
+  return "";
+}
+
 }  // namespace
 
 /// One rank's part of a run.
@@ -94,6 +124,8 @@ struct WagonServer::Run {
   /// Whether a request would move the vehicles as the last one has.
   bool HasLastInputs(const StepRequest& request) const {
     return request.dt_s == loads.dt_s && request.steps == steps &&
+           request.friction_patches.size() == 3 * loads.friction_patches.size() &&
+           BeginWith(loads.friction_patches, request.friction_patches) &&
            train_dynamics::AreSameLoads(request, loads);
   }
   /// Brings the vehicles to a snapshot. @throws SnapshotError
@@ -252,6 +284,11 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   run.loads.steps = static_cast<int>(request.steps);
   run.loads.record = request.record;
   run.loads.ledger = request.ledger;
+  for (std::size_t at = 3 * run.loads.friction_patches.size(); at < request.friction_patches.size();
+       at += 3) {
+    const double* patch = &request.friction_patches[at];
+    run.loads.friction_patches.push_back({patch[0], patch[1], patch[2], {}, {}});
+  }
   train_dynamics::CopyLoads(request, 0, run.rank.count, run.loads);
   const bool sound = run.vehicles.Advance(run.loads, 0, run.state);
   ++run.next_exchange;
@@ -306,6 +343,7 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
         if (wrong.empty()) wrong = Check(load.name, values, count, load.given);
       },
       request);
+  if (wrong.empty()) wrong = CheckPatches(run.loads.friction_patches, request.friction_patches);
   return wrong;
 }
 

@@ -289,6 +289,9 @@ TEST_F(WagonServerTest, RefusesARepetitionWithOtherInputs) {
       [](auto& r) { r.cylinder_pressure_pa[2] += 1.0; },
       [](auto& r) { r.coupler_force_n.clear(); },
       [](auto& r) { r.coupler_force_n[0] = std::numeric_limits<double>::quiet_NaN(); },
+      [](auto& r) {
+        r.friction_patches = {10.0, 20.0, 0.1};
+      },
       [](auto& r) { r.steps += 1; },
       [](auto& r) { r.dt_s *= 2.0; }};
   for (const auto& change : changes) {
@@ -300,6 +303,50 @@ TEST_F(WagonServerTest, RefusesARepetitionWithOtherInputs) {
   other_flags.record = other_flags.ledger = true;
   EXPECT_EQ(Bytes(server_.Step(other_flags)), reply);
   EXPECT_TRUE(Step(2).ok);
+}
+
+TEST_F(WagonServerTest, PatchesOfRailStayOnceTheyHaveCome) {
+  Begin();
+  const std::vector<double> one = {-500.0, 500.0, 0.02}, two = {-500.0, 500.0, 0.02, -90.0, -10.0, 0.3};
+  const auto step = [this](std::uint64_t exchange, const std::vector<double>& patches) {
+    StepRequest request = StepFor(scenario_, exchange);
+    request.friction_patches = patches;
+    return request;
+  };
+  const std::string past = "friction_patches does not begin with those of the exchange before";
+  const std::string known = "exchange 1 has been computed already, with other loads";
+  ASSERT_TRUE(server_.Step(step(0, one)).ok);
+  ExpectRefused(step(1, {}), past);
+  ExpectRefused(step(1, {-500.0, 501.0, 0.02}), past);
+  ExpectRefused(step(1, {-90.0, -10.0, 0.3, -500.0, 500.0, 0.02}), past);
+  StepRequest with_snapshot = step(1, two);
+  with_snapshot.snapshot = true;
+  const StepResponse snapshot = server_.Step(with_snapshot);
+  ASSERT_TRUE(snapshot.ok);
+  ExpectRefused(step(1, one), known);
+  // All answers up to records that feel the rail.
+  const auto go_on = [&](WagonServer& server, const std::vector<double>& patches) {
+    std::string answers;
+    for (std::uint64_t exchange = 2; exchange < 15; ++exchange)
+      answers += Bytes(server.Step(step(exchange, patches)));
+    return answers;
+  };
+  const std::string whole = go_on(server_, two);
+
+  // Who takes its place knows of no patch, and is told of all with its first exchange.
+  ConfigureRequest again = ConfigureFor(scenario_);
+  again.again = true;
+  again.exchange = 2;
+  again.snapshot = snapshot.snapshot;
+  WagonServer other(1);
+  for (WagonServer* server : {&other, &server_}) {
+    ConfigureResponse configured;
+    server->Configure(again, true, configured);
+    ASSERT_TRUE(configured.ok) << configured.message;
+    EXPECT_TRUE(go_on(*server, two) == whole);
+  }
+  ASSERT_TRUE(Configure(again).ok);
+  EXPECT_FALSE(go_on(server_, {}) == whole);
 }
 
 TEST_F(WagonServerTest, TellsItsRunToNobody) {
@@ -352,6 +399,18 @@ TEST_F(WagonServerTest, RefusesStepsThatDoNotFitAndStaysAsItWas) {
       {[](auto& r) { r.steps = 4000000000; },
        "4000000000 steps of 0.001 s are asked for, but it is 2 of 0.001 s in the scenario"},
       {[](auto& r) { r.coupler_force_n.pop_back(); }, "coupler_force_n has 3 values, expected 4"},
+      {[](auto& r) {
+         r.friction_patches = {10.0, 20.0};
+       },
+       "friction_patches has 2 values, expected three for each patch, at most 300"},
+      {[](auto& r) { r.friction_patches.assign(303, 0.1); },
+       "friction_patches has 303 values, expected three for each patch, at most 300"},
+      {[nan](auto& r) {
+         r.friction_patches = {10.0, nan, 0.1};
+       },
+       "friction_patches from [0] on is no patch of rail"},
+      {[](auto& r) { r.friction_patches = {10.0, 20.0, 0.1, 30.0, 30.0, 0.1}; },
+       "friction_patches from [3] on is no patch of rail"},
       {[](auto& r) { r.cylinder_pressure_pa.push_back(0.0); },
        "cylinder_pressure_pa has 4 values, expected 3"},
       {[](auto& r) { r.cylinder_pressure_pa.clear(); }, "cylinder_pressure_pa has 0 values, expected 3"},

@@ -24,11 +24,12 @@ class LiveCommands {
                                       std::uint64_t exchange) const;
 
   /// @return the exchange at whose start it is given at the earliest
-  /// @throws std::invalid_argument as Judge
+  /// @throws std::invalid_argument as Judge, and for a patch of rail too many
   std::uint64_t Receive(const train_brake_msgs::DriverCommand& message);
 
   /// The run's side: those that are due before the exchange that begins now; it is the one of this number.
-  std::vector<train_dynamics::DriverCommand> Take(std::uint64_t exchange);
+  /// @param patches  TrainMaster::patches(), without those that are taken now
+  std::vector<train_dynamics::DriverCommand> Take(std::uint64_t exchange, std::size_t patches);
 
   /// Of all commands taken so far: the most exchanges between its receipt and its effect, and how many commands.
   std::uint64_t largest_latency() const;
@@ -43,6 +44,7 @@ class LiveCommands {
   const train_dynamics::ScenarioParams& scenario_;
   mutable std::mutex mutex_;
   std::vector<Received> received_;
+  std::size_t patches_ = 0;  ///< of rail, received ones included
   std::uint64_t next_exchange_ = 0, largest_latency_ = 0, count_ = 0;
 };
 

@@ -291,6 +291,11 @@ void RankMessages::Pack(const ExchangeRequest& whole, int rank, train_brake_msgs
   part.record = whole.record;
   part.ledger = whole.ledger && !ranks_[rank].is_external;
   part.snapshot = whole.snapshot && gives_snapshots_[rank];
+  part.friction_patches.clear();
+  for (const train_dynamics::FrictionPatchParams& patch : whole.friction_patches) {
+    for (const double number : {patch.from_m, patch.to_m, *patch.friction_coefficient})
+      part.friction_patches.push_back(number);
+  }
   train_dynamics::CopyLoads(whole, ranks_[rank].first, ranks_[rank].count, part);
 }
 

@@ -178,6 +178,7 @@ void RosTransport::Replay(int rank) {
   train_brake_msgs::Step past;
   past.request.run_id = messages_->step[rank].request.run_id;
   for (std::uint64_t i = 0; i < log_.size(); ++i) {
+    request.friction_patches = request_.friction_patches;
     log_.Get(i, request);
     messages_->Pack(request, rank, past.request);
     StepOne(rank, past);

@@ -23,6 +23,7 @@ constexpr std::uint32_t kYields[2] = {1, 50};  // of the two ways of FasterWay
 std::uint32_t RequestRoom(int vehicles) {
   train_brake_msgs::StepRequest request;
   train_dynamics::ResizeLoads(vehicles, true, request);
+  request.friction_patches.resize(3 * train_dynamics::kMostPatchesOnTheWay);
   return ros::serialization::serializationLength(request);
 }
 

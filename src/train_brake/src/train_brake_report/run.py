@@ -14,6 +14,13 @@ from train_brake_report import consist
 from train_brake_report.bag import Recording, read_bag, read_scenario
 
 KMH_PER_MPS = 3.6
+VALUE_OF = {  # the key of the number that follows a command's kind in summary.json
+    "apply": "reduction_kpa",
+    "independent_brake": "pressure_kpa",
+    "throttle": "notch",
+    "dynamic_brake": "notch",
+    "friction": "friction_coefficient",
+}
 MODEL_NAMES = {"2d": "2D train", "ltd": "LTD", "ltd-no-inertia": "LTD without rotational inertia"}
 
 
@@ -168,14 +175,15 @@ class Run:
     @property
     def commands(self) -> List[dict]:
         """Those with a time, and those that were given on the way: by a condition of the scenario, or live."""
-        timed = [command for command in (self.config or {}).get("commands") or [] if command.get("time_s") is not None]
+        listed = (self.config or {}).get("commands") or []
+        timed = [
+            c for c in listed if c.get("time_s") is not None and c["kind"] != "friction"
+        ]  # which is given on the way
         for given in (self.summary or {}).get("commands") or []:
             kind, *value = given["command"].split()
             command = {"time_s": given["time_s"], "kind": kind}
             if value:
-                command[{"apply": "reduction_kpa", "independent_brake": "pressure_kpa"}.get(kind, "notch")] = float(
-                    value[0]
-                )
+                command[VALUE_OF[kind]] = float(value[0])
             timed.append(command)
         return sorted(timed, key=lambda command: command["time_s"])
 

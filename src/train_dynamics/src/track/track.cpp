@@ -67,6 +67,13 @@ std::vector<Span> SpansOf(const std::vector<DipParams>& dips) {
   return spans;
 }
 
+bool AreSpans(const std::vector<FrictionPatchParams>& patches) {
+  return std::all_of(patches.begin(), patches.end(), [](const FrictionPatchParams& patch) {
+    return std::isfinite(patch.from_m) && std::isfinite(patch.to_m) && patch.from_m < patch.to_m &&
+           patch.RampLength() >= 0.0;
+  });
+}
+
 /// A place where the surface changes.
 struct SurfaceChange {
   double at_m;
@@ -227,12 +234,7 @@ void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
 }
 
 void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
-  const bool are_spans =
-      std::all_of(friction_patches.begin(), friction_patches.end(), [](const FrictionPatchParams& patch) {
-        return std::isfinite(patch.from_m) && std::isfinite(patch.to_m) && patch.from_m < patch.to_m &&
-               patch.RampLength() >= 0.0;
-      });
-  if (!are_spans) return;
+  if (!AreSpans(friction_patches)) return;
   constexpr double kRounding = 1e-9;  // [m]
   const std::vector<SurfaceChange> changes = ChangesOf(friction_patches);
   for (std::size_t i = 1; i < changes.size(); ++i) {
@@ -383,8 +385,24 @@ void Track::SetDips() {
   dip_pieces_ = Pieces(std::move(cuts));
 }
 
+bool IsWithinRamp(const TrackParams& track, double position_m) {
+  const std::vector<FrictionPatchParams> patches = track.Patches();
+  if (!AreSpans(patches)) return false;  // another rule says so
+  const std::vector<SurfaceChange> changes = ChangesOf(patches);
+  return std::any_of(changes.begin(), changes.end(), [position_m](const SurfaceChange& change) {
+    return change.Begin() < position_m && position_m < change.End();
+  });
+}
+
+void Track::AddPatches(const std::vector<FrictionPatchParams>& patches) {
+  patches_.insert(patches_.end(), patches.begin(), patches.end());
+  has_patches = !patches_.empty();
+  SetPatches();
+}
+
 void Track::SetPatches() {
   std::vector<double> cuts;
+  surfaces_.clear();
   surfaces_.push_back({-1, -1});
   double last_m = -std::numeric_limits<double>::infinity();
   const auto cut = [&](double at_m, const SurfacePiece& piece) {

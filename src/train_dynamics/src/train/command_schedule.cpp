@@ -37,7 +37,7 @@ CommandSchedule::CommandSchedule(const std::vector<DriverCommand>& commands,
   std::optional<double> latest_s;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const DriverCommand& command = commands[i];
-    if (command.time_s) {
+    if (command.time_s && !command.IsOfRail()) {
       latest_s = std::max(latest_s.value_or(0.0), *command.time_s);
       continue;
     }
@@ -66,10 +66,11 @@ void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& giv
   bool all_before_are_given = true;
   for (Awaited& awaited : commands_) {
     if (awaited.is_given == 0.0) {
-      const bool is_due = awaited.watch
-                              ? all_before_are_given && now.time_s >= awaited.not_before_s.value_or(0.0) &&
-                                    awaited.watch->Holds(now)
-                              : static_cast<double>(now.exchange) >= *awaited.command.exchange;
+      const bool is_due =
+          awaited.watch ? all_before_are_given && now.time_s >= awaited.not_before_s.value_or(0.0) &&
+                              awaited.watch->Holds(now)
+          : awaited.command.time_s ? now.time_s >= *awaited.command.time_s
+                                   : static_cast<double>(now.exchange) >= *awaited.command.exchange;
       if (is_due) {
         awaited.is_given = 1.0;
         give(awaited.command, false);
@@ -92,9 +93,11 @@ std::vector<std::string> CommandSchedule::NotGiven() const {
   std::vector<std::string> sentences;
   for (const Awaited& awaited : commands_) {
     if (awaited.is_given != 0.0) continue;
-    sentences.push_back(
-        "commands[" + std::to_string(awaited.index) + "] (" + awaited.command.Text() + ") was not given: " +
-        (awaited.watch ? "its condition did not come true" : "the run ended before its exchange"));
+    sentences.push_back("commands[" + std::to_string(awaited.index) + "] (" + awaited.command.Text() +
+                        ") was not given: " +
+                        (awaited.watch            ? "its condition did not come true"
+                         : awaited.command.time_s ? "the run ended before its time"
+                                                  : "the run ended before its exchange"));
   }
   return sentences;
 }
@@ -122,6 +125,11 @@ std::vector<double> CommandSchedule::Memory() const {
     memory(given.command.reduction_kpa);
     memory(given.command.notch);
     memory(given.command.pressure_kpa);
+    if (given.command.IsOfRail()) {
+      memory(given.command.from_m);
+      memory(given.command.to_m);
+      memory(given.command.friction_coefficient);
+    }
     memory(static_cast<double>(given.command.vehicles.size()));
     for (int vehicle : given.command.vehicles) memory(vehicle);
   }
@@ -145,6 +153,11 @@ void CommandSchedule::SetMemory(const std::vector<double>& memory) {
     given.command.reduction_kpa = next();
     given.command.notch = next();
     given.command.pressure_kpa = next();
+    if (given.command.IsOfRail()) {
+      given.command.from_m = next();
+      given.command.to_m = next();
+      given.command.friction_coefficient = next();
+    }
     given.command.exchange = static_cast<double>(given.exchange);
     for (double vehicles = next(); vehicles > 0.0; vehicles -= 1.0)
       given.command.vehicles.push_back(static_cast<int>(next()));

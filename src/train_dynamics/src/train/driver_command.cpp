@@ -1,5 +1,7 @@
 #include "train_dynamics/train/driver_command.h"
 
+#include "train_dynamics/track/track.h"
+
 namespace train_dynamics {
 
 const char* NameOf(DriverCommandKind kind) {
@@ -34,12 +36,33 @@ std::string DriverCommand::Text() const {
   if (kind == DriverCommandKind::kApply) return name + " " + ShortestDecimal(reduction_kpa) + " kPa";
   if (kind == DriverCommandKind::kIndependentBrake)
     return name + " " + ShortestDecimal(pressure_kpa) + " kPa";
+  if (IsOfRail())
+    return name + " " + ShortestDecimal(friction_coefficient) + " from " + ShortestDecimal(from_m) + " to " +
+           ShortestDecimal(to_m) + " m";
   return IsOfLocomotives() ? name + " " + ShortestDecimal(notch) : name;
 }
 
 bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group) {
-  if (command.IsOfTrainBrake()) return false;
+  if (command.IsOfTrainBrake() || command.IsOfRail()) return false;
   return group.vehicle.traction || (group.locomotive && command.IsOfLocomotiveBrakes());
+}
+
+std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key,
+                                   const TrackParams& track) {
+  std::vector<BrokenRule> broken;
+  const auto judge = [&](const char* name, double at_m) {
+    if (IsWithinRamp(track, at_m))
+      broken.push_back(
+          {key + "." + name, "must not lie within a ramp between surfaces of the track", {"track"}});
+  };
+  judge("from_m", patch.from_m);
+  judge("to_m", patch.to_m);
+  return broken;
+}
+
+std::string RuleOfPatches() {
+  return "must not be friction once more: a run takes " + std::to_string(kMostPatchesOnTheWay) +
+         " patches of rail on its way";
 }
 
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train) {

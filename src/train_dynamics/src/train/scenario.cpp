@@ -131,8 +131,16 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   JudgeDips(broken);
   JudgeSlideProtection(broken);
   const std::vector<DriverCommand> named = WithVehicles(commands, train);
+  std::size_t patches = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].IsOfTrainBrake()) continue;
+    if (commands[i].IsOfRail()) {
+      for (const BrokenRule& rule : JudgePatch(commands[i].OfRail(), "commands" + ListIndex(i), track))
+        broken.push_back(rule);
+      if (++patches == kMostPatchesOnTheWay + 1)
+        broken.push_back({"commands" + ListIndex(i) + ".kind", RuleOfPatches(), {}});
+      continue;
+    }
     if (!named[i].group.empty()) {
       broken.push_back({"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {"train"}});
       continue;

@@ -215,6 +215,12 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     leaves_out("track.dips", scenario.track.dips.size());
     if (!scenario.adhesion_limit)
       leaves_out("track.friction_patches", scenario.track.friction_patches.size());
+    const auto of_rail = std::count_if(scenario.commands.begin(), scenario.commands.end(),
+                                       [](const DriverCommand& command) { return command.IsOfRail(); });
+    if (!scenario.adhesion_limit && of_rail > 0)
+      warnings.push_back({"commands", std::string("the ") + ModelName(model) +
+                                          " model leaves out commands of kind friction (" +
+                                          Counted(static_cast<std::size_t>(of_rail)) + ")"});
   }
   WarnOfStart(scenario, warnings);
   if ((scenario.Uses(VehicleModel::kTwoD) || scenario.adhesion_limit) && !train.consist.empty()) {
@@ -256,7 +262,7 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     }
     const auto of_brake =
         std::count_if(scenario.commands.begin(), scenario.commands.end(),
-                      [](const DriverCommand& command) { return !command.IsOfLocomotives(); });
+                      [](const DriverCommand& command) { return command.IsOfTrainBrake(); });
     if (of_brake > 0) {
       warnings.push_back({"commands", "commands of the brake (" +
                                           Counted(static_cast<std::size_t>(of_brake)) + ") are" + unused});

@@ -46,6 +46,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
                      static_cast<std::uint64_t>(period),
                      {}};
   }
+  for (const DriverCommand& command : scenario.commands) patches_ += command.IsOfRail() ? 1 : 0;
   request_.dt_s = scenario.dt_s;
   request_.steps = scenario.StepsPerExchange();
   request_.coupler_force_n.assign(consist.vehicles() + 1, 0.0);
@@ -73,7 +74,10 @@ void TrainMaster::Resume(const TrainCheckpoint& checkpoint) {
   MemoryReader driver(checkpoint.built_in_driver);
   if (driver_) driver_->state.ForEachField(driver);
   driver.End();
-  for (const GivenCommand& given : schedule_.Given()) Give(given);
+  for (const GivenCommand& given : schedule_.Given()) {
+    Give(given);
+    if (given.is_live && given.command.IsOfRail()) ++patches_;
+  }
   MemoryReader brake(checkpoint.brake);
   brake_.ForEachField(brake);
   brake.End();
@@ -169,6 +173,10 @@ void TrainMaster::OpenPipes() {
 }
 
 void TrainMaster::Command(const DriverCommand& command) {
+  if (command.IsOfRail()) {
+    if (patches_ == kMostPatchesOnTheWay) throw std::invalid_argument("kind " + RuleOfPatches());
+    ++patches_;
+  }
   if (command.IsOfTrainBrake()) BrakeSystem(brake_).Command(command.OfBrake(time_s()));  // of a copy: may it?
   schedule_.Add(command);
 }
@@ -231,6 +239,8 @@ void TrainMaster::Give(const GivenCommand& given) {
   const double at_s = static_cast<double>(given.exchange) * scenario_.exchange_interval_s;
   if (given.command.IsOfLocomotives()) {
     locomotives_.Command(given.command.OfLocomotives(at_s));
+  } else if (given.command.IsOfRail()) {
+    request_.friction_patches.push_back(given.command.OfRail());
   } else if (given.command.IsOfLocomotiveBrakes()) {
     brake_.Command(given.command.OfLocomotiveBrakes(at_s));
   } else {

@@ -353,6 +353,7 @@ class BatchedBlock : public VehicleBlock {
   }
 
   bool Advance(const ExchangeRequest& request, int offset, ExchangeReply& reply) override {
+    if (request.friction_patches.size() != patches_) TakePatches(request.friction_patches);
     bool sound = true;
     for (Run& run : runs_) {
       const std::size_t at = offset + run.begin - first_;
@@ -438,6 +439,12 @@ class BatchedBlock : public VehicleBlock {
   }
 
  private:
+  /// Those that are new.
+  void TakePatches(const std::vector<FrictionPatchParams>& patches) {
+    track_.AddPatches({patches.begin() + static_cast<std::ptrdiff_t>(patches_), patches.end()});
+    patches_ = patches.size();
+  }
+
   /// Vehicles of one group, one behind the other.
   struct Run {
     int begin;  ///< index of the first in the train
@@ -446,6 +453,7 @@ class BatchedBlock : public VehicleBlock {
   };
 
   Track track_;
+  std::size_t patches_ = 0;  ///< that were given to the running train
   int first_;
   std::vector<Run> runs_;
 };

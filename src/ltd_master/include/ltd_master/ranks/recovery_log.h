@@ -21,14 +21,16 @@ class RecoveryLog {
   std::uint64_t exchange() const { return exchange_; }  ///< of the snapshots
   const Snapshot& snapshot(int rank) const { return snapshots_[rank]; }
   std::uint64_t size() const { return size_; }  ///< exchanges since
-  /// The inputs of exchange() + i, into a request whose arrays have their sizes, the same for all exchanges; no record is asked for.
+  /// The inputs of exchange() + i, into a request whose arrays have their sizes, the same for all exchanges; no record is asked
+  /// for. Of the request's friction patches those stay that it had.
   void Get(std::uint64_t i, train_dynamics::ExchangeRequest& request) const;
 
  private:
   std::uint64_t exchange_ = 0;
   std::vector<Snapshot> snapshots_;
   std::uint64_t size_ = 0;
-  std::vector<double> inputs_;  ///< [exchange][array of LoadArrays][number]
+  std::vector<std::size_t> patches_;  ///< [exchange] how many of the friction patches it had
+  std::vector<double> inputs_;        ///< [exchange][array of LoadArrays][number]
 };
 
 }  // namespace ltd_master

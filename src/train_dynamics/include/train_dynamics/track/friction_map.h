@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "train_dynamics/contact/adhesion.h"
@@ -38,5 +39,7 @@ struct FrictionPatchParams {
 
   double RampLength() const { return ramp_length_m.value_or(adhesion ? 1.0 : 0.0); }  ///< [m]
 };
+
+inline constexpr std::size_t kMostPatchesOnTheWay = 100;  ///< patches that come while a train runs
 
 }  // namespace train_dynamics

@@ -75,7 +75,7 @@ struct TrackParams {
   void JudgeRamps(std::vector<BrokenRule>& broken) const;
 };
 
-/// The track made ready for wheels that ask what is under them; constant.
+/// The track made ready for wheels that ask what is under them; constant, but for patches that are added.
 ///
 /// Each quantity has pieces of its own (track/pieces.h) and a value for each. Vehicles side by side ask once as long as
 /// they are on the same piece. A surface that changes while the train runs (water, cleaning, sand) has its place in
@@ -85,6 +85,9 @@ class Track {
   /// Not explicit: a track is its parameters.
   /// @throws std::invalid_argument when the parameters violate their rules
   Track(const TrackParams& params = {});
+
+  /// Puts patches over those that are there. None of their ends may lie within a ramp: IsWithinRamp.
+  void AddPatches(const std::vector<FrictionPatchParams>& patches);
 
   bool has_dips = false;
   bool has_patches = false;
@@ -136,6 +139,9 @@ class Track {
   Pieces surface_pieces_;
   std::vector<SurfacePiece> surfaces_;  ///< [piece]
 };
+
+/// Whether a patch of the track has a ramp there, where no other one may begin or end.
+bool IsWithinRamp(const TrackParams& track, double position_m);
 
 /// Grade [-], rise over run, uphill positive: the longitudinal force on a vehicle is -m g grade.
 double GradeAt(const Track& track, double position_m);

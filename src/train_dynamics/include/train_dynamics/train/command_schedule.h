@@ -53,7 +53,7 @@ class ConditionWatch {
 ///
 /// A command with a condition is watched for from the moment on when all those before it in the list have been given: the
 /// list is read as an instruction is. Commands with a time wait for nothing, and are none of this schedule's: brake and
-/// locomotives have them from the start. All conditions are judged at the start of an exchange, so that what follows is
+/// locomotives have them from the start. Patches of rail are given here, whatever their time. All conditions are judged at the start of an exchange, so that what follows is
 /// the same for any number of threads, ranks and machines.
 class CommandSchedule {
  public:

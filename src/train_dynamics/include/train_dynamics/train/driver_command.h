@@ -6,10 +6,14 @@
 
 #include "train_dynamics/brake/brake_command.h"
 #include "train_dynamics/brake/locomotive_brakes.h"
+#include "train_dynamics/judgement.h"
 #include "train_dynamics/parameters.h"
+#include "train_dynamics/track/friction_map.h"
 #include "train_dynamics/train/locomotive_command.h"
 
 namespace train_dynamics {
+
+struct TrackParams;
 
 /// Something that comes true on the way. All that is given must hold at one time.
 struct ConditionParams {
@@ -41,7 +45,8 @@ enum class DriverCommandKind {
   kThrottle,
   kDynamicBrake,
   kIndependentBrake,
-  kBailOff
+  kBailOff,
+  kFriction
 };
 
 inline constexpr std::initializer_list<std::pair<const char*, DriverCommandKind>> kDriverCommandKinds = {
@@ -51,7 +56,8 @@ inline constexpr std::initializer_list<std::pair<const char*, DriverCommandKind>
     {"throttle", DriverCommandKind::kThrottle},
     {"dynamic_brake", DriverCommandKind::kDynamicBrake},
     {"independent_brake", DriverCommandKind::kIndependentBrake},
-    {"bail_off", DriverCommandKind::kBailOff}};
+    {"bail_off", DriverCommandKind::kBailOff},
+    {"friction", DriverCommandKind::kFriction}};
 
 const char* NameOf(DriverCommandKind kind);
 
@@ -62,6 +68,7 @@ struct DriverCommand {
   double reduction_kpa = kRequired;
   double notch = kRequired;
   double pressure_kpa = kRequired;
+  double from_m = kRequired, to_m = kRequired, friction_coefficient = kRequired;
   std::vector<int> vehicles;
   std::string group;
   std::optional<ConditionParams> when;
@@ -76,8 +83,7 @@ struct DriverCommand {
         "number of the exchange at whose start it is given: of commands that were given to a running train");
     v.Choice("kind", kind, kDriverCommandKinds,
              "apply, emergency, release: the brake of the train; throttle, dynamic_brake, independent_brake, "
-             "bail_off: "
-             "locomotives");
+             "bail_off: locomotives; friction: a patch of rail comes, which is none of a driver's commands");
     if (kind == DriverCommandKind::kApply)
       v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
     if (IsOfLocomotives())
@@ -86,7 +92,14 @@ struct DriverCommand {
     if (kind == DriverCommandKind::kIndependentBrake)
       v.Number("pressure_kpa", pressure_kpa, kNonNegative,
                "of the locomotives' cylinders by their own brake; 0: released");
-    if (!IsOfTrainBrake()) {
+    if (IsOfRail()) {
+      v.Number("from_m", from_m, kFinite, "position at which the patch of rail begins");
+      v.Number("to_m", to_m, kFinite, "position at which it ends");
+      v.Check(from_m < to_m, "to_m", "must be greater than from_m", {"from_m"});
+      v.Number("friction_coefficient", friction_coefficient, Range{0.0, 1.0, true, false},
+               "mu0 of the patch from then on; the rest of the adhesion is that of the vehicles");
+    }
+    if (IsOfLocomotives() || IsOfLocomotiveBrakes()) {
       v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
                  "locomotives that obey, from 1, or from -1 for the last; none: all, or those of group");
       v.Text("group", group,
@@ -107,7 +120,11 @@ struct DriverCommand {
   bool IsOfLocomotiveBrakes() const {
     return kind == DriverCommandKind::kIndependentBrake || kind == DriverCommandKind::kBailOff;
   }
-  bool IsOfTrainBrake() const { return !IsOfLocomotives() && !IsOfLocomotiveBrakes(); }
+  bool IsOfTrainBrake() const { return !IsOfLocomotives() && !IsOfLocomotiveBrakes() && !IsOfRail(); }
+  /// A patch of rail, whose surface no driver commands.
+  bool IsOfRail() const { return kind == DriverCommandKind::kFriction; }
+  /// That patch. Only of a command of it.
+  FrictionPatchParams OfRail() const { return {from_m, to_m, friction_coefficient, {}, {}}; }
   /// The same for the train's brake, given at a time. Only of a command of it.
   BrakeCommand OfBrake(double at_s) const;
   /// The same for the locomotives, given at a time. Only of a command of locomotives.
@@ -121,6 +138,13 @@ struct DriverCommand {
 /// Whether a command of locomotives acts on the vehicles of a group: throttle and dynamic brake on those with traction, the
 /// brakes of locomotives on all locomotives.
 bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group);
+
+/// The rules between a patch of rail that comes on the way and the track under it.
+/// @param key  of the command
+std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key,
+                                   const TrackParams& track);
+/// The rule that a run takes at most kMostPatchesOnTheWay of them, as a sentence about `kind`.
+std::string RuleOfPatches();
 
 /// The same commands with the numbers of the locomotives of their group, where they name one that has some.
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train);

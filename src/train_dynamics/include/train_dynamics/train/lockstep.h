@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "train_dynamics/numeric/digest.h"
+#include "train_dynamics/track/friction_map.h"
 #include "train_dynamics/train/snapshot.h"
 #include "train_dynamics/vehicle/slide_event.h"
 #include "train_dynamics/vehicle/vehicle_loads.h"
@@ -37,6 +38,9 @@ struct ExchangeRequest : LoadArrays {
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
   bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
+  /// Those of rail that have come since the start of the run, each with a friction_coefficient and no ramp. They lie over those
+  /// of the track, later ones over earlier ones. All of them, in each exchange: a rank that comes later has them, too.
+  std::vector<FrictionPatchParams> friction_patches;
 };
 
 /// One wagon in full detail, at the end of a step.

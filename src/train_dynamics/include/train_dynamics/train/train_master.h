@@ -75,8 +75,10 @@ class TrainMaster {
   void Exchange();
   /// The driver does this at the start of the next exchange. The vehicles of the command and its notch must be checked,
   /// see JudgeLocomotiveCommand.
-  /// @throws std::invalid_argument if the brake cannot obey; then nothing has changed
+  /// @throws std::invalid_argument if the brake cannot obey, or for a patch of rail too many; then nothing has changed
   void Command(const DriverCommand& command);
+  /// Patches of rail that have come or will come on the way: at most kMostPatchesOnTheWay.
+  std::size_t patches() const { return patches_; }
   const CommandSchedule& schedule() const { return schedule_; }
   /// What a driver sees at the start of the next exchange, commands that are given there not included.
   /// @param ahead_m            how far he sees and knows the line, from the front of the train; >= 0
@@ -126,6 +128,7 @@ class TrainMaster {
   BreakawayLoads breakaway_;
   bool can_part_ = false;
   std::size_t opened_pipes_ = 0;
+  std::size_t patches_ = 0;  ///< of rail: of the scenario's commands, and live ones
   std::uint64_t exchange_ = 0, first_exchange_ = 0;
   std::uint64_t digest_ = 0;
   ExchangeRequest request_;
