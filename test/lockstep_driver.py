@@ -190,7 +190,7 @@ class LockstepDriver(LaunchTest):
             self.end(driver)
         launch = self.run_train("none", 2, "startup_timeout:=1", code=4)
         self.assertRegex(launch.log(), "the driver /train/driver is missing after .*drive is not advertised")
-        stray = self.driver("rosrun", "train_brake_examples", "hold_speed", namespace="/other")
+        stray = self.driver("rosrun", "train_brake_examples", "hold_speed", "_speed_kmh:=30", namespace="/other")
         self.assertTrue(wait_until(lambda: "/other/driver/drive" in self.master.services(), 30))
         launch = self.run_train("elsewhere", 2, "startup_timeout:=1", code=4)
         self.assertIn("but /other/driver/drive is: for that driver say driver:=/other/driver", launch.log())
