@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Vehicles that a node of somebody else moves: in a train, beside the built-in ones, judged, faulty, lost and brought back."""
+"""Vehicles that an external node moves: in a train, beside the built-in ones, judged, faulty, lost and brought back."""
 import json
 import pathlib
 import re
@@ -13,7 +13,7 @@ from launches import SHORT_TRAIN, LaunchTest, wait_until
 
 HERE = pathlib.Path(__file__).resolve().parent
 CONFIG = HERE.parent / "config"
-# Two wagons of this program, two of somebody else: two masses that are joined as all others are.
+# Two wagons of this program, two of an external node: two masses that are joined as all others are.
 SCENARIO = f"""
 base: {SHORT_TRAIN}
 model: ltd

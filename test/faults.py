@@ -559,7 +559,7 @@ class Full(Matrix):
         killed = self.signal(signal.SIGKILL)
         self.named(
             launch,
-            "the run broke down: " + RANK + r", exchange \d+: closed the connection",
+            "the run failed: " + RANK + r", exchange \d+: closed the connection",
             killed,
             "stopped, exit code 4",
             expected_s=1,

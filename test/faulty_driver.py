@@ -4,12 +4,12 @@
 usage: faulty_driver.py FAULT EXCHANGE
 
 FAULT is one of
-  version   he speaks another version of the protocol
-  md5sum    he has another definition of the service
-  stale     he answers the exchange before
-  gives_up  he answers that he does not go on
-  refused   he commands what the train cannot obey, and prints what he is told of it
-EXCHANGE is that from which on he has it.
+  version   it has another version of the protocol
+  md5sum    it has another definition of the service
+  stale     it answers the exchange before
+  gives_up  it answers that it does not go on
+  refused   it commands what the train cannot obey, and prints what it is told of it
+EXCHANGE is the first one with the fault.
 """
 import rospy
 from train_brake_msgs.msg import DriverCommand

@@ -79,7 +79,7 @@ class LockstepDriver(LaunchTest):
         self.assertEqual(1, len({json.dumps(self.given(run)) for run in runs}))
         self.assertGreater(len(first["commands"]), 2)
         self.assertTrue(all(c["exchange"] % EXCHANGES_PER_PERIOD == 0 for c in first["commands"]))
-        # He holds his speed: the integral leaves no error but that of whole notches.
+        # It holds the speed: the integral leaves no error but that of whole notches.
         self.assertAlmostEqual(9, first["final_speed_kmh"]["mean"], delta=0.5)
 
         # In process: by the bag, as a scenario; and by a driver who does again what was recorded.
@@ -110,7 +110,7 @@ class LockstepDriver(LaunchTest):
     def test_a_killed_driver_triggers_the_policy(self):
         for policy, code, consequence in (
             ("emergency", 0, "The emergency brake is applied"),
-            ("hold", 0, "as he has left it"),
+            ("hold", 0, "continues with the driver's last commands"),
             ("stop", 4, "the driver is lost"),
         ):
             driver = self.example("hold_speed", "_speed_kmh:=30")
@@ -161,7 +161,7 @@ class LockstepDriver(LaunchTest):
         self.assertEqual(whole.summary()["state_digest"], launch.summary()["state_digest"])
 
     def test_an_interrupted_run_goes_on_with_its_driver(self):
-        self.example("hold_speed", "_speed_kmh:=9", "_notches_per_m:=0")  # who depends on what he sees alone
+        self.example("hold_speed", "_speed_kmh:=9", "_notches_per_m:=0")  # depends on nothing but its view
         whole = self.run_train("whole", 20)
         launch = self.launch("part", 20, "real_time_factor:=2")
         launch.saw(r" ([2-9]|1\d)\.\d+ of 20 s", 90)

@@ -156,7 +156,7 @@ class WagonServices(unittest.TestCase):
         self.begin()
         self.assertTrue(self.step(self.step_request(0, run_id=self.run_id)).ok)
         self.refused(self.step(self.step_request(1, run_id=99)), "run 99 is not known here")
-        # Somebody else, from the command line, while we are connected.
+        # Another client, from the command line, while we are connected.
         arguments = (
             "{protocol_version: %d, run_id: 99, first_vehicle: 1, vehicle_count: 1, scenario: '', "
             "scenario_digest: %d}" % (ConfigureRequest.PROTOCOL_VERSION, text_digest(""))

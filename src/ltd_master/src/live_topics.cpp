@@ -23,7 +23,7 @@ LiveTopics::LiveTopics(const ros::NodeHandle& node)
       pressures_publisher_(Latched<train_brake_msgs::BrakePressures>(node_, "brake_pressures")) {}
 
 void LiveTopics::Show(const train_dynamics::TrainRecord& record, const Pace& pace) {
-  // Always kept: the run may be paused before the next one, and somebody may come then.
+  // Always kept: the run may be paused before the next one, and a subscriber may come then.
   last_ = record;
   has_record_ = held_back_ = true;
   const Clock::time_point now = Clock::now();

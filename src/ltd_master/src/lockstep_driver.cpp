@@ -30,7 +30,7 @@ const char* ConsequenceOf(OnLostDriver on_lost) {
     case OnLostDriver::kEmergency:
       return "The emergency brake is applied.";
     case OnLostDriver::kHold:
-      return "The train goes on as he has left it.";
+      return "The train continues with the driver's last commands.";
     case OnLostDriver::kStop:
       break;
   }

@@ -306,7 +306,7 @@ int MasterNode::Run() {
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
   } else if (!fault.empty()) {
-    ROS_FATAL("the run broke down: %s", Presentable(fault).c_str());
+    ROS_FATAL("the run failed: %s", Presentable(fault).c_str());
   }
   return exit_code;
 }

@@ -93,7 +93,7 @@ TEST_F(RankMessagesTest, TakesSlidesOfItsVehiclesOnly) {
   EXPECT_EQ(reply_.slides[1].vehicle, 5.0);
   EXPECT_EQ(Complaint(slide_of(3.0)),
             "/b (vehicles 4-6), exchange 4: replied a slide of vehicle 3, which it does not have");
-  EXPECT_NE(Complaint([](auto& r) { r.record.slides.assign(5, 4.0); }).find("replied slides that are none"),
+  EXPECT_NE(Complaint([](auto& r) { r.record.slides.assign(5, 4.0); }).find("replied with malformed slides"),
             std::string::npos);
   EXPECT_NE(Complaint([](auto& r) { r.record.wheelset_work_j.clear(); }).find("wheelset_work_j"),
             std::string::npos);

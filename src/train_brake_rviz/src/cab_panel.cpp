@@ -152,7 +152,7 @@ void CabPanel::ShowAnswer(bool success, const QString& message) {
 
 void CabPanel::SetLever(QSlider* lever, double notch, double notches) {
   lever->setEnabled(notches > 0.0);
-  if (lever->isSliderDown()) return;  // somebody holds it
+  if (lever->isSliderDown()) return;  // a user holds it
   const QSignalBlocker quiet(lever);
   lever->setRange(0, static_cast<int>(std::lround(notches)));
   lever->setValue(static_cast<int>(std::lround(notch)));

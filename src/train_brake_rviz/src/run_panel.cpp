@@ -114,7 +114,7 @@ void RunPanel::ShowStatus(const RunStatus& status) {
   exchanges_->setEnabled(paused);
   pause_->setEnabled(!paused && !ended);
   pace_->setEnabled(!ended);
-  if (!pace_->hasFocus()) {  // not while somebody types
+  if (!pace_->hasFocus()) {  // not while a user types
     const QSignalBlocker quiet(pace_);
     pace_->setValue(status.wanted_real_time_factor);
   }

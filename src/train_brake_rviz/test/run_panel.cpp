@@ -103,7 +103,7 @@ TEST_F(RunPanelTest, InvitesToPlayOnlyWhileTheTrainWaits) {
                        [](const QLabel* label) { return label->text() == "ready: press Play"; });
   };
   ASSERT_TRUE(Comes(invites));
-  EXPECT_TRUE(RunClient(ros::NodeHandle("/train")).Resume().success);  // by somebody else
+  EXPECT_TRUE(RunClient(ros::NodeHandle("/train")).Resume().success);  // by another client
   EXPECT_TRUE(Comes([&] { return !invites(); }));
 }
 

@@ -1,4 +1,4 @@
-// The built-in driver: his goals by closed forms, and what he makes of trains on lines.
+// The built-in driver: its goals by closed forms, and its driving of trains over lines.
 #include "train_dynamics/train/built_in_driver.h"
 
 #include <gtest/gtest.h>

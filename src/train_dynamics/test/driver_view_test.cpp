@@ -92,7 +92,7 @@ TEST(BrakeHandle, StandsWhereTheNewestCommandHasPutIt) {
   EXPECT_TRUE(view.emergency);
 }
 
-/// A short train that is driven by a list, and what its driver sees every half second, before each of his commands.
+/// A short train that is driven by a list, and what its driver sees every half second, before each of its commands.
 struct DrivenTrain {
   DrivenTrain()
       : loaded(config::LoadScenario(ScenarioFile("drive_and_stop"),

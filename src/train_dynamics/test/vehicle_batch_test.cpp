@@ -121,7 +121,7 @@ TEST_P(LaneKernelsTest, MoveEachWagonAsTheScalarStepDoes) {
       EXPECT_EQ(outputs[i].wedge_friction_n, batch.OutputOf(i).wedge_friction_n);
     }
   }
-  EXPECT_EQ(arrays.velocity_mps[kVehicles], -1.0);  // what is behind the batch is somebody else's
+  EXPECT_EQ(arrays.velocity_mps[kVehicles], -1.0);  // what is behind the batch is not written
 }
 
 TEST_P(LaneKernelsTest, RecordWhatTheScalarLawDoesWhileWheelsRollAndSlide) {

@@ -121,8 +121,8 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
   const std::string identity = IdentityOf(then.params);
   if (FirstLine(checkpoint.scenario) != VersionLine()) {
     throw std::invalid_argument(fmt::format(
-        "{} was written by '{}', this is '{}': other versions may give other bits, so that none goes on with "
-        "a run of another",
+        "{} was written by '{}', this is '{}': other versions may give other bits, so it cannot resume "
+        "this run",
         (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2),
         VersionLine().substr(2)));
   }
@@ -140,7 +140,7 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
     CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
   if (static_cast<long>(checkpoint.exchange) >= now.params.Exchanges()) {
     throw std::invalid_argument(
-        fmt::format("{} is of the end of the run, {:g} s: nothing is left to do; a larger duration_s goes on",
+        fmt::format("{} was taken at the end of the run, {:g} s: nothing is left to simulate; a larger duration_s goes on",
                     (folder / kCheckpointFile).string(),
                     static_cast<double>(checkpoint.exchange) * now.params.exchange_interval_s));
   }

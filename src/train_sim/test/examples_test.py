@@ -52,7 +52,7 @@ def train_sim(*arguments):
 
 
 class OwnFiles(unittest.TestCase):
-    """In a folder of the user's, with his own vehicle, consist and route."""
+    """In the user's own folder, with own vehicle, consist and route."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

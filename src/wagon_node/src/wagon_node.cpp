@@ -16,7 +16,7 @@ constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that
 
 std::string CallerOf(const ros::M_string& connection_header) {
   const auto caller = connection_header.find("callerid");
-  return caller == connection_header.end() ? "somebody" : caller->second;
+  return caller == connection_header.end() ? "an unnamed caller" : caller->second;
 }
 
 }  // namespace

@@ -26,19 +26,20 @@ struct LockstepDriverOptions {
   double start_timeout_s = 60.0;  ///< [wall time] for the driver to come up; 0: for ever
   double deadline_s = 30.0;       ///< [wall time] for each answer; 0: for ever
   OnLostDriver on_lost = OnLostDriver::kEmergency;
-  double sight_m = 5000.0;                                   ///< how far he sees and knows the line
-  bool sees_couplers = false;                                ///< he is shown the forces in all couplers
+  double sight_m = 5000.0;                                   ///< how far the driver sees and knows the line
+  bool sees_couplers = false;                                ///< the driver is shown the forces in all couplers
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
 };
 
-/// A driver who ends the run: he did not come up, speaks otherwise, or is lost where that is to end it.
+/// A driver who ends the run: its node did not start, has another protocol version, or was
+/// lost where on_lost_driver is stop.
 class DriverFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// A driver in another node, in lockstep with the train: asked at the start of every control period, and waited for
-/// (Drive.srv). Who is late is named after 1, 3 and 10 s, and lost at the deadline; he is lost, too, with his connection, and
-/// when his answer cannot be used. A lost driver is not asked again.
+/// (Drive.srv). A driver that is late is named after 1, 3 and 10 s, and lost at the deadline; it is lost, too, with its
+/// connection, and when its answer cannot be used. A lost driver is not asked again.
 class LockstepDriver {
  public:
   using Commands = std::vector<train_brake_msgs::DriverCommand>;
@@ -47,19 +48,19 @@ class LockstepDriver {
   /// @throws std::invalid_argument if the control period is not a multiple of it
   LockstepDriver(LockstepDriverOptions options, std::uint64_t run_id, double exchange_interval_s);
 
-  /// Whether he is to be asked before that exchange.
+  /// Whether it is to be asked before that exchange.
   bool IsDue(std::uint64_t exchange) const { return lost_.empty() && exchange % exchanges_ == 0; }
-  /// Waits until his service can be called. Names him every 5 s.
+  /// Waits until its service can be called. Names it every 5 s.
   /// @throws DriverFailure, WaitInterrupted
   void Connect();
-  /// His answer; none where he is lost in the call, which a warning tells. See IsLost.
+  /// Its answer; none where it is lost in the call, which a warning tells. See IsLost.
   /// @throws DriverFailure, WaitInterrupted
   Commands Ask(const train_brake_msgs::DriverView& view);
-  /// He shall know with the next request what the train could not obey.
+  /// It is told with the next request what the train could not obey.
   void Refuse(const std::string& sentence);
 
   bool IsLost() const { return !lost_.empty(); }
-  const std::string& lost() const { return lost_; }  ///< why he is lost; empty: he is not
+  const std::string& lost() const { return lost_; }  ///< why it is lost; empty: it is not
   const std::string& name() const { return options_.node; }
   const LockstepDriverOptions& options() const { return options_; }
   unsigned late_answers() const { return late_answers_; }  ///< that took a second or longer

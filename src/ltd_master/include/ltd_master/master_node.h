@@ -86,7 +86,7 @@ class MasterNode {
   void GiveCommands(train_run::TrainRun& run);
   void AskDriver(train_run::TrainRun& run);
   train_brake_msgs::DriverView ViewOf(train_run::TrainRun& run, bool sees_couplers) const;
-  /// For cabs: at most 20 times per second of wall time, and only where somebody listens.
+  /// For cabs: at most 20 times per second of wall time, and only while there are subscribers.
   void ShowView(train_run::TrainRun& run);
   void Publish(const train_dynamics::TrainRecord& record);
   /// While the train stands: what those need who come now.

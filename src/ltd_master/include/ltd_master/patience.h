@@ -8,7 +8,7 @@
 
 namespace ltd_master {
 
-/// The end of a wait that somebody asked for. What was waited for has not come.
+/// A wait was ended on request (Ctrl-C, stop) before what it waited for came.
 class WaitInterrupted : public std::runtime_error {
  public:
   WaitInterrupted() : std::runtime_error("interrupted while waiting for other nodes") {}

@@ -14,7 +14,7 @@ namespace ltd_master {
 ///            the parameter ~global_clock says
 ///
 /// Beside each clock stands the parameter `use_sim_time`, which tells nodes to follow it: true as long as the run lasts;
-/// afterwards it is again what it was, so that nodes that come later do not wait for a clock that nobody drives.
+/// afterwards it is again what it was, so that nodes that come later do not wait for a clock that has stopped.
 ///
 /// Both topics are latched: who comes in a pause gets the time at which the train stands. ROS takes time 0 for "no time
 /// yet", so the clock begins at 1 ns.

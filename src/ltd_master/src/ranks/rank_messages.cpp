@@ -124,7 +124,7 @@ class Unpacker {
   /// @param numbers  of slides, one behind the other
   void Slides(const std::vector<double>& numbers, ExchangeReply& reply) const {
     using train_dynamics::kSlideNumbers;
-    if (numbers.size() % kSlideNumbers != 0 || !AllFinite(numbers)) Fail("replied slides that are none");
+    if (numbers.size() % kSlideNumbers != 0 || !AllFinite(numbers)) Fail("replied with malformed slides");
     for (std::size_t at = 0; at < numbers.size(); at += kSlideNumbers) {
       train_dynamics::SlideEvent slide;
       std::copy_n(&numbers[at], kSlideNumbers, reinterpret_cast<double*>(&slide));

@@ -130,7 +130,7 @@ def main(argv: List[str]) -> int:
     except BagError as error:
         print(presentable(f"export: {error}"), file=sys.stderr)
         return 1
-    except BrokenPipeError:  # of --list, which nobody reads on
+    except BrokenPipeError:  # of --list into a closed pipe
         return 1
     except OSError as error:
         print(presentable(f"export: the tables could not be written: {error}"), file=sys.stderr)

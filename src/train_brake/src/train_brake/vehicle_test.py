@@ -29,7 +29,7 @@ It is called as the train's master would call it, on a level track:
   slow           every reply comes within deadline_s
 
 Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged by you.
-Exit codes: 0 all passed, 1 some failed, 2 bad arguments or nobody to test."""
+Exit codes: 0 all passed, 1 some failed, 2 bad arguments or no vehicle node to test."""
 
 EPSILON_M = 1e-9
 PASSIVE = 1e-6  # of the energy that was there and the work that went in
@@ -283,7 +283,7 @@ def effective_mass(vehicles):
         for force in (0.0, PULL_N):
             vehicles.begin()
             forces = vehicles.none()
-            forces[: i + 1] = [force] * (i + 1)  # what pulls vehicle i, and nobody else
+            forces[: i + 1] = [force] * (i + 1)  # what pulls vehicle i alone
             vehicles.step(forces)
             v.append(vehicles.v[i])
         masses.append(PULL_N * vehicles.interval_s / (v[1] - v[0]) if v[1] != v[0] else math.inf)

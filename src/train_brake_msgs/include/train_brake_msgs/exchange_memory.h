@@ -29,11 +29,11 @@
 ///             reply, serialised as they are on the wire.
 ///   call c    master  writes the requests, numbers them c, and wakes all ranks at once
 ///             rank    finds its request numbered c, moves its vehicles, writes its reply, numbers it c, and
-///                     takes one off `unreplied`; whoever takes the last one off wakes the master
+///                     takes one off `unreplied`; the rank that takes the last one off wakes the master
 ///             master  reads the replies that are numbered c
 ///
 /// So a call costs each rank one system call, in which it sleeps, and the master two. A process that has been
-/// given up and wakes up late can wake the master too early, but nobody reads its slot any more.
+/// given up and wakes up late can wake the master too early, but its slot is not read any more.
 ///
 /// The memory is a file without a name (memfd_create(2)): it cannot outlive the processes that use it. They
 /// open it as /proc/PID/fd/DESCRIPTOR of the master, which only who may look into the master anyway can. It is

@@ -17,7 +17,7 @@ class MarkerWriter {
   /// Appends the drawing's markers, one list of triangles and the texts, in a namespace of their own.
   void Append(const std::string& name, const Drawing& drawing, visualization_msgs::MarkerArray& out);
 
-  /// Sends everything again next time: somebody may have come late or have cleared the screen.
+  /// Sends everything again next time: a display may have been added late or cleared.
   void Refresh() { sent_.clear(); }
 
  private:

@@ -196,7 +196,7 @@ const DriverView& TrainMaster::View(double ahead_m, bool is_shown_couplers) {
   }
   SetBrakeHandle(scenario_.initial_reduction_kpa, scenario_.commands, schedule_.Given(), time_s(),
                  scenario_.exchange_interval_s, view);
-  BrakeSystem brake(brake_);  // of a copy: whether somebody looks changes nothing
+  BrakeSystem brake(brake_);  // of a copy: looking changes nothing
   brake.PressuresAt(time_s(), pressure_pa_);
   view.cylinder_kpa = 1e-3 * pressure_pa_.front();
   view.mean_cylinder_kpa = 0.0;

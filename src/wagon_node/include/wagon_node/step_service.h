@@ -15,7 +15,7 @@
 
 namespace wagon_node {
 
-/// The service ~step for masters on other machines, and for everybody else who speaks TCPROS.
+/// The service ~step for masters on other machines, and for any other client of TCPROS.
 ///
 /// Like any ROS service, but for what it costs: of a call's thirteen system calls of roscpp three are left (wait,
 /// read, write), its copies of the messages are none, and a request may hold anything. It has a thread of its own,

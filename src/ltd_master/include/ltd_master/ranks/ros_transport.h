@@ -43,7 +43,7 @@ struct ExchangeTiming {
 ///           configures all of them side by side.
 /// Exchange  sends every rank its request before it waits for any, and returns when all have replied.
 ///
-/// Whoever is late in either is named after 1, 3 and 10 s, and lost at the deadline. A rank is lost, too, when
+/// A rank that is late in either is named after 1, 3 and 10 s, and lost at the deadline. A rank is lost, too, when
 /// its connection breaks or its reply cannot be read. A lost rank is brought back, while the others wait:
 ///
 ///   1. wait until a node of its name answers: respawned, started by hand anywhere, or the same one, awake again
@@ -54,7 +54,7 @@ struct ExchangeTiming {
 ///
 /// A rank that gives no snapshots cannot be brought back: the run ends with it.
 ///
-/// Both throw RankFailure (no recovery wanted, or in vain; a refusal; a reply that makes no sense) and
+/// Both throw RankFailure (no recovery wanted, or recovery failed; a refusal; a reply that makes no sense) and
 /// WaitInterrupted; afterwards the transport is of no more use.
 ///
 /// The connections last as long as the transport. Their end tells the wagon nodes that the run is over.

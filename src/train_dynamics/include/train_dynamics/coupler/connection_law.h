@@ -19,7 +19,7 @@
 /// q is the extension relative to the unstretched length [m], tension positive; the slack is +-slack/2. The laws are a
 /// closed set: OfConnectionLaws in coupler/connection.h. A new one is a header and an entry there.
 ///
-/// Of the work F dq of an interval dissipates
+/// The part of the work F dq of an interval that is dissipated:
 ///
 ///   F dq - d StoredEnergy           if kStoresByMemory: what can be got back depends on the path; not below 0 if
 ///                                   kRateIndependent, so that what a finite step makes shows in the residual
@@ -37,7 +37,7 @@ struct GearForce {
 struct ConnectionTangent {
   double stiffness_n_per_m;
   double damping_ns_per_m;
-  bool depends_on_force;  ///< whether it is another one under another force
+  bool depends_on_force;  ///< whether the tangent depends on the force
 };
 
 /// The largest force that connections are judged by [N]: that of the paper's emergency brake.

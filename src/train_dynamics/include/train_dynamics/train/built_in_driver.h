@@ -12,7 +12,7 @@
 
 namespace train_dynamics {
 
-/// What a driver knows of his train before he starts: its sheet, and how its brake answers.
+/// What the driver knows of the train before the start: its consist, and how its brake responds.
 struct DriversTrain {
   struct Locomotives {
     TractionParams traction;
@@ -37,18 +37,18 @@ struct DriversTrain {
   double ApplicationShare(double time_s) const;
 };
 
-/// Makes the sheet. The brake's answers are those that the scenario's brake gives to a train at rest.
+/// Collects it. The brake's responses are those of the scenario's brake on a train at rest.
 DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake,
                               const Consist& consist);
 
-/// What a built-in driver remembers from look to look.
+/// What the built-in driver remembers from one period to the next.
 struct BuiltInDriverState {
-  double lever = 0.0;            ///< notch that he has set; negative: of the dynamic brake
-  double lever_s = -1e9;         ///< when he last notched up
-  double handle_s = -1e9;        ///< when he last moved the brake handle
-  double released_s = -1e9;      ///< when he last released
-  double air_n = 0.0;            ///< force of the shoes, as he feels it
-  double resistance_mps2 = 0.0;  ///< what he has learnt that the train lacks, as a deceleration
+  double lever = 0.0;            ///< notch that is set; negative: of the dynamic brake
+  double lever_s = -1e9;         ///< time of the last notch up
+  double handle_s = -1e9;        ///< time of the last movement of the brake handle
+  double released_s = -1e9;      ///< time of the last release
+  double air_n = 0.0;            ///< force of the shoes, as estimated
+  double resistance_mps2 = 0.0;  ///< learnt resistance of the train, as a deceleration
   double stop = 0.0;             ///< index of the next stop
   double is_stopping = 0.0;      ///< 1: the last application before a stop is made
   double standing_s = -1.0;      ///< since when the train has stood at the stop; < 0: it does not
@@ -62,8 +62,8 @@ struct BuiltInDriverState {
 
 /// The highest speed [m/s] that a driver holds at this place, and the deceleration [m/s2] (<= 0) that it asks for.
 ///
-/// The lowest of: his speed; the limit under the train, less the margin; and, for each lower limit v_l ahead at a distance
-/// s, less the way of `lead_s`, sqrt(v_l^2 + 2 b s) with b = deceleration_mps2; likewise towards the stop, with the creep
+/// The lowest of: the speed to hold; the limit under the train, less the margin; and, for each lower limit v_l ahead at a distance
+/// s, less the distance covered in `lead_s`, sqrt(v_l^2 + 2 b s) with b = deceleration_mps2; likewise towards the stop, with the creep
 /// speed. b counts where one of the last two is the lowest.
 struct SpeedGoal {
   double speed_mps;
@@ -76,16 +76,16 @@ SpeedGoal GoalAt(const BuiltInDriverParams& p, const DriverView& view, const std
 double StoppingDistance(const BuiltInDriverParams& p, const DriversTrain& train, double reduction_kpa,
                         double resistance_mps2, const DriverView& view, double air_n);
 
-/// What the driver does now.
+/// The driver's commands of this period.
 ///
 ///   force = M_moving (b c + (goal - v) / T) + M (g i + r)      c = 2 v / goal - 1 in [0, 1]; r learnt, i the mean grade
 ///
-/// He gives it by these rules: traction and brakes never work together, except to start uphill; the dynamic brake comes
+/// The force is given by these rules: traction and brakes never work together, except to start uphill; the dynamic brake comes
 /// first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. A notch is taken when
 /// the force is more than 0.7 of the way to the next. The air brake: a first reduction, steps to what is needed, at most
 /// the largest; a brake of graduated release is let down in steps, another one is released once the dynamic brake alone is
-/// more than enough; after a release he waits recharge_time_s, and re-applies one step deeper if the speed does not allow
-/// that. A stop: creep, then the reduction whose predicted distance fits, then the largest at rest. After an emergency he
+/// more than enough; after a release the driver waits recharge_time_s, and re-applies one step deeper if the speed does not allow
+/// that. A stop: creep, then the reduction whose predicted distance fits, then the largest at rest. After an emergency it
 /// closes the throttle, and does nothing more before a release.
 ///
 /// Left out: driving backwards, several controls of distributed power, slack.

@@ -52,8 +52,9 @@ class ConditionWatch {
 /// The driver's commands that are given while the train runs, and the end of the run.
 ///
 /// A command with a condition is watched for from the moment on when all those before it in the list have been given: the
-/// list is read as an instruction is. Commands with a time wait for nothing, and are none of this schedule's: brake and
-/// locomotives have them from the start. Patches of rail are given here, whatever their time. All conditions are judged at the start of an exchange, so that what follows is
+/// list is executed in order. Commands with a time wait for nothing, and are not part of this schedule: brake and
+/// locomotives have them from the start. Patches of rail are given here, whatever their time. All conditions are judged
+/// at the start of an exchange, so that what follows is
 /// the same for any number of threads, ranks and machines.
 class CommandSchedule {
  public:

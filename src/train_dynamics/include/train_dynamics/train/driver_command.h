@@ -15,7 +15,7 @@ namespace train_dynamics {
 
 struct TrackParams;
 
-/// Something that comes true on the way. All that is given must hold at one time.
+/// A condition that is met during the run. All keys that are given must hold at once.
 struct ConditionParams {
   std::optional<double> position_m;
   std::optional<double> speed_above_kmh, speed_below_kmh;
@@ -29,7 +29,7 @@ struct ConditionParams {
     v.Number("speed_above_kmh", speed_above_kmh, kNonNegative, "the train's mean speed is above, either way");
     v.Number("speed_below_kmh", speed_below_kmh, kPositive, "the train's mean speed is below, either way");
     v.Flag("standing", standing, "the mean speed is at most 1 mm/s, or has just changed its sign");
-    v.Number("delay_s", delay_s, kNonNegative, "what follows follows so much later");
+    v.Number("delay_s", delay_s, kNonNegative, "delay after the condition holds");
     v.Check(position_m || speed_above_kmh || speed_below_kmh || standing, "position_m",
             "must be given, or else speed_above_kmh, speed_below_kmh or standing",
             {"speed_above_kmh", "speed_below_kmh", "standing"});

@@ -19,13 +19,13 @@ struct StopParams {
     v.Number("position_m", position_m, kFinite, "of the first vehicle's centre; or else station");
     v.Text("station", station, "name of a station of the track");
     v.Number("dwell_s", dwell_s, kNonNegative,
-             "standing time before the driver goes on to the next stop; behind the last one he stays");
+             "standing time before the driver goes on to the next stop; after the last stop the train stays");
     v.Check(position_m.has_value() == station.empty(), "position_m", "or station must be given, one of them",
             {"station"});
   }
 };
 
-/// A driver who is built in: holds a speed or the route's limits, and stops where he is told to. See
+/// The built-in driver: holds a speed or the route's limits, and stops at given places. See
 /// train/built_in_driver.h.
 struct BuiltInDriverParams {
   double period_s = 0.5;
@@ -45,25 +45,25 @@ struct BuiltInDriverParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("period_s", period_s, Range{0.0, 10.0},
-             "time between two looks of the driver, a multiple of exchange_interval_s");
+             "period at which the driver acts, a multiple of exchange_interval_s");
     v.Number("speed_kmh", speed_kmh, Range{0.0, 400.0},
              "speed to hold; not given: as fast as the route's limits allow");
-    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative, "below each limit that the driver holds");
+    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative, "margin that the driver keeps below each limit");
     v.Number("deceleration_mps2", deceleration_mps2, Range{0.0, 1.5},
-             "planned, towards lower limits and stops");
+             "planned deceleration towards lower limits and stops");
     v.Number("response_time_s", response_time_s, kPositive,
-             "in which the driver means to take back a difference from his speed");
+             "time constant for correcting a difference in speed");
     v.Number("notch_time_s", notch_time_s, kNonNegative,
-             "from a notch up, of throttle or dynamic brake, to the next");
+             "least time from one notch up, of throttle or dynamic brake, to the next");
     v.Number("recharge_time_s", recharge_time_s, kNonNegative,
-             "from a release to the next application, if the speed allows");
-    v.Number("creep_speed_kmh", creep_speed_kmh, kPositive, "at which the driver approaches a stop");
+             "least time from a release to the next application, if the speed allows");
+    v.Number("creep_speed_kmh", creep_speed_kmh, kPositive, "speed of the approach to a stop");
     v.Number("first_reduction_kpa", first_reduction_kpa, kPositive,
-             "reduction of the brake pipe that he begins with");
-    v.Number("reduction_step_kpa", reduction_step_kpa, kPositive, "between his further reductions");
+             "first reduction of the brake pipe");
+    v.Number("reduction_step_kpa", reduction_step_kpa, kPositive, "step between further reductions");
     v.Number("largest_reduction_kpa", largest_reduction_kpa, kPositive,
-             "full service, that he does not exceed");
-    v.Number("sight_m", sight_m, kNonNegative, "how far the driver knows the line ahead");
+             "largest reduction (full service)");
+    v.Number("sight_m", sight_m, kNonNegative, "distance ahead over which the driver knows the line");
     v.List("stops", stops, "where the driver stops, one after the other");
     v.Check(largest_reduction_kpa >= first_reduction_kpa, "largest_reduction_kpa",
             "must be at least first_reduction_kpa", {"first_reduction_kpa"});

@@ -18,8 +18,8 @@ struct PlaceAhead {
 
 /// What a driver sees and knows at the start of an exchange; positions are along the track, ahead is where they rise.
 ///
-/// Whoever drives, in the master's own process or behind a service, is given this and nothing else. It is a function of
-/// the train's state at that exchange, so that a driver who is one of it repeats his run bit for bit.
+/// What drives, in the master's own process or behind a service, is given this and nothing else. It is a function of
+/// the train's state at that exchange, so that a driver that depends on nothing else repeats its run bit for bit.
 struct DriverView {
   std::uint64_t exchange = 0;
   double time_s = 0.0;

@@ -4,11 +4,11 @@
 
 namespace train_dynamics {
 
-/// The longest exchange interval H that a connection stands [s].
+/// The longest exchange interval H at which a connection is numerically stable [s].
 ///
-/// Its force is evaluated once per interval, at the predicted middle, and held. In the motion that is hardest on that,
+/// Its force is evaluated once per interval, at the predicted middle, and held. In the least stable motion,
 /// neighbours of a long train move against each other, each coupler head of mass m between two equal connections of
-/// tangent stiffness k and damping c, four times which act on its displacement x:
+/// tangent stiffness k and damping c, which act on its displacement x with a factor of four:
 ///
 ///   v1 = v0 - (4 H / m) (k (x0 + H/2 v0) + c v0),   x1 = x0 + H/2 (v0 + v1)
 ///

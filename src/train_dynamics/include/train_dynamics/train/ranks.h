@@ -12,7 +12,7 @@ struct Rank {
   std::string name;  ///< of its node: VehicleName of its first vehicle
   int first = 0;     ///< index in the train, from 0
   int count = 0;
-  bool is_external = false;  ///< its vehicles are moved by a program of somebody else
+  bool is_external = false;  ///< its vehicles are moved by an external program
 };
 
 /// Deals the vehicles to ranks of about equal size: rank r has the vehicles [n r / ranks, n (r + 1) / ranks).

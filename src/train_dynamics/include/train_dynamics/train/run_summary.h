@@ -11,14 +11,14 @@
 
 namespace train_dynamics {
 
-/// What a run came to whose start differed by a little: to how many newtons the maxima of a run are determined.
+/// Results of a run with a slightly different start: to how many newtons the maxima of a run are determined.
 struct TwinRun {
   double start_offset_kmh = 0.0;        ///< of every vehicle's speed
   std::vector<ForceExtremes> extremes;  ///< [connection]
   double distance_m = 0.0, mean_speed_mps = 0.0;
 };
 
-/// What a run came to. Collected from its records as they pass.
+/// Results of a run. Collected from its records as they pass.
 class RunSummary {
  public:
   explicit RunSummary(const ScenarioParams& scenario)

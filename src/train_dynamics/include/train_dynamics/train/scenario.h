@@ -77,7 +77,7 @@ struct ScenarioParams {
              {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}},
              "of LTD vehicles");
     v.Flag("adhesion_limit", adhesion_limit,
-           "of LTD vehicles: the rail gives at most mu0 W (2D vehicles always know)");
+           "of LTD vehicles: the rail gives at most mu0 W (2D vehicles always have this limit)");
     v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false},
                "vehicles recorded in full detail, from 1, or from -1 for the last");
     v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s",

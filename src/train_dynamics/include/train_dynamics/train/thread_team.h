@@ -37,11 +37,11 @@ class ThreadTeam {
 
   /// Whose the task of a member is in each round.
   struct alignas(64) Claim {
-    std::atomic<unsigned> round{0};  ///< the last one in which somebody took it
+    std::atomic<unsigned> round{0};  ///< the last one in which a thread took it
   };
 
   void RunTogether(const std::function<void(int)>& task);
-  /// Does the task of a member, unless somebody has taken it.
+  /// Does the task of a member, unless a thread has taken it.
   void Take(int member, unsigned round);
   void Work(int member);
   void End();

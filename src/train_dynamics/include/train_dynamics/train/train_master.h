@@ -81,8 +81,8 @@ class TrainMaster {
   std::size_t patches() const { return patches_; }
   const CommandSchedule& schedule() const { return schedule_; }
   /// What a driver sees at the start of the next exchange, commands that are given there not included.
-  /// @param ahead_m            how far he sees and knows the line, from the front of the train; >= 0
-  /// @param is_shown_couplers  whether he is shown the forces in all couplers, as no cab does
+  /// @param ahead_m            distance over which the driver knows the line, from the front of the train; >= 0
+  /// @param is_shown_couplers  whether the driver is shown the forces in all couplers, as no cab does
   const DriverView& View(double ahead_m, bool is_shown_couplers = false);
 
   long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run, if `until` does not end it
@@ -105,7 +105,7 @@ class TrainMaster {
   void ShowRecord();
   /// Tells the brake of connections that have broken since it was told last.
   void OpenPipes();
-  /// The built-in driver with what he knows and remembers.
+  /// The built-in driver with what it knows and remembers.
   struct Driver {
     DriversTrain train;
     std::vector<double> stops_m;

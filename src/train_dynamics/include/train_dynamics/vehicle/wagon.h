@@ -128,7 +128,7 @@ struct BogieVehicle {
   }();
   /// Of the state as an array of numbers: the carbody's speed, the first wheelset's rotation; the others' follow.
   static constexpr int kSpeed = 1 + 3 * kBodies + kCarbody, kFirstSpin = 1 + 5 * kBodies + kWheelset1;
-  /// Of the first wheelset: way, rotation [rad], speed; energy lost in creep, work on the rail.
+  /// Of the first wheelset: distance run, rotation [rad], speed; energy lost in creep, work on the rail.
   static constexpr int kFirstWay = 1 + kWheelset1, kFirstTurn = 1 + 2 * kBodies + kWheelset1,
                        kFirstSpeed = 1 + 3 * kBodies + kWheelset1,
                        kFirstCreep = 1 + 6 * kBodies + sizeof(VehicleWork<double>) / sizeof(double),
