@@ -161,6 +161,15 @@ class Code(unittest.TestCase):
                     with self.subTest(f"{page.relative_to(ROOT)}:{number}"):
                         self.assertTrue(any(path.endswith("/" + header) for path in headers), header)
 
+    def test_architecture_names_every_file(self):
+        page = (ROOT / "docs" / "architecture.md").read_text()
+        files = [*ROOT.glob("src/*/include/**/*.h"), *ROOT.glob("src/*/src/**/*.cpp")]
+        self.assertGreater(len(files), 300)
+        kernels = re.compile(r"(.*_kernels)_(base|avx2|avx512)")  # one law, once per instruction set
+        for stem in sorted({kernels.sub(r"\1", path.stem) for path in files} - {"main"}):
+            with self.subTest(stem):
+                self.assertTrue(re.search(rf"\b{stem}\b", page), f"no {stem} in docs/architecture.md")
+
     def test_tests_exist(self):
         tests = {path.stem: path.read_text() for path in ROOT.glob("src/*/test/*_test.*")}
         for page in self.NAMED:
