@@ -16,7 +16,7 @@
 #include "train_console/console.h"
 #include "train_node/caller.h"
 #include "train_node/node_parameters.h"
-#include "train_node/occupant.h"
+#include "train_node/running_node.h"
 #include "train_node/start.h"
 #include "train_results/plain_file.h"
 #include "train_run/exit_code.h"
@@ -36,10 +36,10 @@ bool WaitForRosMaster() {
 
 /// Ends this process before it ends the run of another one, whose name it would take.
 void RefuseTakenName() {
-  using train_node::Occupant;
-  const Occupant other = train_node::FindOccupantOfOwnName();
-  if (other.state == Occupant::State::kNone) return;
-  const std::string about = other.state == Occupant::State::kSilent
+  using train_node::RunningNode;
+  const RunningNode other = train_node::FindNodeOfOwnName();
+  if (other.state == RunningNode::State::kNone) return;
+  const std::string about = other.state == RunningNode::State::kSilent
                                 ? "it does not answer; stopped, or in a debugger"
                             : other.about.empty() ? "it is starting"
                                                   : other.about;

@@ -17,7 +17,7 @@
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/ranks.h"
 #include "train_node/caller.h"
-#include "train_node/occupant.h"
+#include "train_node/running_node.h"
 #include "train_run/exit_code.h"
 #include "train_run/interrupt.h"
 

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "train_node/occupant.h"
+#include "train_node/running_node.h"
 
 namespace ltd_master {
 namespace {
@@ -56,7 +56,8 @@ std::string OtherPublisher() {
     for (int k = 0; k < topics[i][1].size(); ++k) {
       const std::string node = topics[i][1][k];
       if (node == ros::this_node::getName()) continue;
-      if (train_node::FindOccupant(node, kPatience).state != train_node::Occupant::State::kNone) return node;
+      if (train_node::FindRunningNode(node, kPatience).state != train_node::RunningNode::State::kNone)
+        return node;
     }
   }
   return "";

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "train_console/console.h"
-#include "train_node/occupant.h"
+#include "train_node/running_node.h"
 
 namespace train_node {
 
@@ -29,7 +29,7 @@ void WaitForOwnName() {
   bool has_told = false;
   void (*const handler)(int) =
       std::signal(SIGINT, SIG_DFL);  // roscpp's only works in a node that is registered
-  for (Occupant other; (other = FindOccupantOfOwnName()).state == Occupant::State::kAlive;) {
+  for (RunningNode other; (other = FindNodeOfOwnName()).state == RunningNode::State::kAlive;) {
     if (!has_told) {
       ROS_WARN(
           "%s runs already, on %s: this one waits until that one has ended. Another train under the same ROS "

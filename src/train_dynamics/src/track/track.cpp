@@ -269,7 +269,7 @@ void AddSteps(const std::vector<RoutePointParams>& points, const Value& value,
 std::vector<StepValue> GradesBetween(const std::vector<HeightParams>& heights) {
   std::vector<StepValue> steps;
   if (heights.empty()) return steps;
-  // The first value of Steps holds before its position as well.
+  // The first value of a StepFunction holds before its position as well.
   steps.push_back({heights.front().position_m - 1.0, 0.0});
   for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
     const HeightParams &here = heights[i], &next = heights[i + 1];
@@ -362,11 +362,11 @@ Stretch TrackParams::Extent() const {
 
 Track::Track(const TrackParams& params) : has_dips(!params.dips.empty()), dips_(params.dips) {
   strict_config::Validate(params);
-  grades_ = Steps(params.Grades(), 0.0);
+  grades_ = StepFunction(params.Grades(), 0.0);
   const std::vector<StepValue> curvatures = params.Curvatures();
   has_curves = !curvatures.empty();
-  curvatures_ = Steps(curvatures, 0.0);
-  speed_limits_ = Steps(params.SpeedLimits(), std::numeric_limits<double>::infinity());
+  curvatures_ = StepFunction(curvatures, 0.0);
+  speed_limits_ = StepFunction(params.SpeedLimits(), std::numeric_limits<double>::infinity());
   patches_ = params.Patches();
   has_patches = !patches_.empty();
   SetDips();

@@ -6,9 +6,9 @@ namespace train_dynamics {
 namespace {
 
 /// The steps of a quantity on (from_m, to_m], by rising position; a piece with the same value as that before it is none.
-std::vector<PlaceAhead> StepsOn(const Steps& steps, double from_m, double to_m) {
+std::vector<PlaceAhead> StepsOn(const StepFunction& steps, double from_m, double to_m) {
   std::vector<PlaceAhead> ahead;
-  for (Steps::Held held = steps.From(from_m); held.on.to_m <= to_m;) {
+  for (StepFunction::Held held = steps.From(from_m); held.on.to_m <= to_m;) {
     const double at_m = held.on.to_m, before = held.value;
     held = steps.From(at_m);
     if (held.value != before) ahead.push_back({at_m, held.value});

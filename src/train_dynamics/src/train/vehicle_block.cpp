@@ -89,13 +89,14 @@ std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
       return std::string(kBodyNames[b]) + " " + Describe(what, value, unit);
     };
     const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
-    if (wrong(s.velocity.x[b], absurd::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
-    if (wrong(s.velocity.z[b], absurd::kSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
-    if (wrong(over.z[b], absurd::kMovement))
+    if (wrong(s.velocity.x[b], state_limits::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
+    if (wrong(s.velocity.z[b], state_limits::kSpeed))
+      return describe("vertical speed", s.velocity.z[b], "m/s");
+    if (wrong(over.z[b], state_limits::kMovement))
       return describe("vertical displacement over the rail", over.z[b], "m");
-    if (b < kWheelset1 && wrong(over.pitch[b], absurd::kPitch))
+    if (b < kWheelset1 && wrong(over.pitch[b], state_limits::kPitch))
       return describe("pitch over the rail", over.pitch[b], "rad");
-    if (b >= kWheelset1 && wrong(s.velocity.pitch[b], absurd::kRotation)) {
+    if (b >= kWheelset1 && wrong(s.velocity.pitch[b], state_limits::kRotation)) {
       return describe("rotation", s.velocity.pitch[b], "rad/s");
     }
   }

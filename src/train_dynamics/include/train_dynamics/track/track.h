@@ -6,12 +6,12 @@
 
 #include "train_dynamics/contact/polach.h"
 #include "train_dynamics/numeric/scalar.h"
+#include "train_dynamics/track/dip.h"
 #include "train_dynamics/track/friction_map.h"
 #include "train_dynamics/track/grade.h"
 #include "train_dynamics/track/pieces.h"
-#include "train_dynamics/track/profile.h"
 #include "train_dynamics/track/route.h"
-#include "train_dynamics/track/steps.h"
+#include "train_dynamics/track/step_function.h"
 
 namespace train_dynamics {
 
@@ -95,9 +95,9 @@ class Track {
   /// Whether the rail is level but for grades and has the vehicles' own surface all along.
   bool IsPlain() const { return !has_dips && !has_patches; }
 
-  const Steps& grades() const { return grades_; }              ///< [-], rise over run
-  const Steps& curvatures() const { return curvatures_; }      ///< [1/m], to the right positive
-  const Steps& speed_limits() const { return speed_limits_; }  ///< [m/s], infinite where there is none
+  const StepFunction& grades() const { return grades_; }              ///< [-], rise over run
+  const StepFunction& curvatures() const { return curvatures_; }      ///< [1/m], to the right positive
+  const StepFunction& speed_limits() const { return speed_limits_; }  ///< [m/s], infinite where there is none
 
   /// The stretch around a position that no dip touches; an empty one within a dip.
   Stretch FlatFrom(double position_m) const;
@@ -129,7 +129,7 @@ class Track {
   AdhesionParams SurfaceOf(int patch, const AdhesionParams& vehicle) const;
   const AdhesionParams* ShapeOf(const SurfacePiece& piece, const AdhesionParams& vehicle) const;
 
-  Steps grades_, curvatures_, speed_limits_;
+  StepFunction grades_, curvatures_, speed_limits_;
   std::vector<DipParams> dips_;
   Pieces dip_pieces_;
   std::vector<int>
@@ -188,9 +188,9 @@ bool AllOn(const Stretch& stretch, const T& position_m) {
 
 /// A quantity that is constant in steps, for one vehicle or for several side by side.
 template <class T>
-T ValueUnder(const Steps& steps, const T& position_m) {
+T ValueUnder(const StepFunction& steps, const T& position_m) {
   if (steps.IsConstant()) return T(steps.First());
-  const Steps::Held first = steps.From(FirstLane(position_m));
+  const StepFunction::Held first = steps.From(FirstLane(position_m));
   if (AllOn(first.on, position_m)) return T(first.value);
   constexpr int kLanes = kLanesOf<T>;
   double at[kLanes], value[kLanes];

@@ -51,7 +51,7 @@ struct WagonDetail {
   std::array<double, 4> nest_compression_m{};
 };
 
-/// The fault that ends a run: a state that is not finite or absurd.
+/// The fault that ends a run: a state that is not finite or beyond its limits.
 struct VehicleFault {
   int vehicle = -1;  ///< index in the train, from 0; -1: none
   std::string what;  ///< body, quantity and value

@@ -31,7 +31,7 @@ class VehicleBlock {
   /// Takes such rows back. @throws SnapshotError if they are not of these vehicles
   virtual void Restore(const StateRow* rows) = 0;
 
-  /// The first vehicle of the block whose state is not finite or absurd, if any.
+  /// The first vehicle of the block whose state is not finite or beyond its limits, if any.
   virtual VehicleFault FindFault() const = 0;
 };
 

@@ -5,7 +5,7 @@
 
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/track/track.h"
-#include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/state_limits.h"
 #include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
@@ -124,7 +124,7 @@ VehicleRecord<T> RecordOf(const LtdVehicle& /*vehicle*/, const LtdState<T>& s, c
 /// Whether the speed is one that a vehicle can have; false for anything that is not a number.
 template <class T>
 MaskOf<T> IsSound(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const LtdState<T>& s) {
-  return Abs(s.v_mps) < T(absurd::kSpeed);
+  return Abs(s.v_mps) < T(state_limits::kSpeed);
 }
 
 /// Kinetic energy [J]; the only store of energy in an LTD vehicle.

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "train_dynamics/track/track.h"
-#include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/state_limits.h"
 #include "train_dynamics/vehicle/vehicle_loads.h"
 #include "train_dynamics/vehicle/vehicle_params.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
@@ -381,12 +381,12 @@ OverRail<T, kPerBogie> OverRailOf(const BogieVehicle<kPerBogie>& w, const Track&
 template <class T, int kPerBogie>
 MaskOf<T> IsSound(const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<T, kPerBogie>& s) {
   const OverRail<T, kPerBogie> over = OverRailOf(w, track, s);
-  MaskOf<T> sound = Abs(s.velocity.x[kCarbody]) < T(absurd::kSpeed);
+  MaskOf<T> sound = Abs(s.velocity.x[kCarbody]) < T(state_limits::kSpeed);
   for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
-    sound = sound & (Abs(s.velocity.x[b]) < T(absurd::kSpeed)) & (Abs(s.velocity.z[b]) < T(absurd::kSpeed)) &
-            (Abs(over.z[b]) < T(absurd::kMovement)) &
-            (b < kWheelset1 ? Abs(over.pitch[b]) < T(absurd::kPitch)
-                            : Abs(s.velocity.pitch[b]) < T(absurd::kRotation));
+    sound = sound & (Abs(s.velocity.x[b]) < T(state_limits::kSpeed)) &
+            (Abs(s.velocity.z[b]) < T(state_limits::kSpeed)) & (Abs(over.z[b]) < T(state_limits::kMovement)) &
+            (b < kWheelset1 ? Abs(over.pitch[b]) < T(state_limits::kPitch)
+                            : Abs(s.velocity.pitch[b]) < T(state_limits::kRotation));
   }
   return sound;
 }

@@ -1,4 +1,4 @@
-#include "train_dynamics/track/steps.h"
+#include "train_dynamics/track/step_function.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace train_dynamics {
 
-Steps::Steps(const std::vector<StepValue>& steps, double without_steps) {
+StepFunction::StepFunction(const std::vector<StepValue>& steps, double without_steps) {
   std::vector<double> cuts;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (i > 0) cuts.push_back(steps[i].from_m);
@@ -16,18 +16,18 @@ Steps::Steps(const std::vector<StepValue>& steps, double without_steps) {
   pieces_ = Pieces(std::move(cuts));
 }
 
-Steps::Held Steps::From(double position_m) const {
+StepFunction::Held StepFunction::From(double position_m) const {
   const int piece = pieces_.NumberAt(position_m);
   return {pieces_[piece], values_[piece]};
 }
 
-double Steps::At(double position_m) const { return values_[pieces_.NumberAt(position_m)]; }
+double StepFunction::At(double position_m) const { return values_[pieces_.NumberAt(position_m)]; }
 
-void Steps::At(int count, const double* position_m, double* value) const {
+void StepFunction::At(int count, const double* position_m, double* value) const {
   for (int i = 0; i < count; ++i) value[i] = At(position_m[i]);
 }
 
-double Steps::SmallestOn(double from_m, double to_m) const {
+double StepFunction::SmallestOn(double from_m, double to_m) const {
   const auto [first, last] = std::minmax({pieces_.NumberAt(from_m), pieces_.NumberAt(to_m)});
   return *std::min_element(values_.begin() + first, values_.begin() + last + 1);
 }

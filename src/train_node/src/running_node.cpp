@@ -1,4 +1,4 @@
-#include "train_node/occupant.h"
+#include "train_node/running_node.h"
 
 #include <netdb.h>
 #include <poll.h>
@@ -160,7 +160,7 @@ std::string Identify(const std::string& node, std::chrono::milliseconds patience
 
 }  // namespace
 
-Occupant FindOccupant(const std::string& node, std::chrono::milliseconds patience) {
+RunningNode FindRunningNode(const std::string& node, std::chrono::milliseconds patience) {
   // Every node has this service from its first moment, in C++ and in Python.
   const std::string service = node + "/get_loggers";
   const auto place = Lookup(service);
@@ -168,14 +168,14 @@ Occupant FindOccupant(const std::string& node, std::chrono::milliseconds patienc
   Connection connection(place->first, place->second, Clock::now() + patience);
   if (!connection.is_open()) return {};
   const std::optional<std::string> name = Greet(connection, service, true);
-  if (!name) return {Occupant::State::kSilent, place->first, ""};
+  if (!name) return {RunningNode::State::kSilent, place->first, ""};
   if (*name != node) return {};  // the port belongs to another one by now
-  return {Occupant::State::kAlive, place->first, Identify(node, patience)};
+  return {RunningNode::State::kAlive, place->first, Identify(node, patience)};
 }
 
-Occupant FindOccupantOfOwnName() {
+RunningNode FindNodeOfOwnName() {
   constexpr std::chrono::milliseconds kPatience(2000);
-  return FindOccupant(ros::this_node::getName(), kPatience);
+  return FindRunningNode(ros::this_node::getName(), kPatience);
 }
 
 }  // namespace train_node

@@ -1,4 +1,4 @@
-#include "train_dynamics/track/profile.h"
+#include "train_dynamics/track/dip.h"
 
 #include <gtest/gtest.h>
 

@@ -15,12 +15,12 @@ struct StepValue {
 ///
 /// Each value holds from its position to the next one's; the first also holds before it, the last to all that lies
 /// behind. A look-up costs the same for any number of steps (track/pieces.h).
-class Steps {
+class StepFunction {
  public:
-  explicit Steps(double value = 0.0) : values_{value} {}
+  explicit StepFunction(double value = 0.0) : values_{value} {}
   /// @param steps           by rising position
   /// @param without_steps   the value everywhere if there are none
-  Steps(const std::vector<StepValue>& steps, double without_steps);
+  StepFunction(const std::vector<StepValue>& steps, double without_steps);
 
   /// Whether it has one value everywhere, `First`.
   bool IsConstant() const { return values_.size() == 1; }

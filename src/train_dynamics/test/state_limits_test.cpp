@@ -1,6 +1,6 @@
 // Limits beyond which a vehicle is not sound, counted from the rail.
 
-#include "train_dynamics/vehicle/absurd.h"
+#include "train_dynamics/vehicle/state_limits.h"
 
 #include <gtest/gtest.h>
 
