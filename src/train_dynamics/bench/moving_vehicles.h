@@ -39,7 +39,7 @@ class MovingVehicles {
       loads_.cylinder_pressure_pa.push_back(3.3e5 + 1e5 * share);
     }
     ResizeReply(kVehicles, reply_);
-    VehicleBatch<Vehicle> batch(vehicle, BestLaneKernels(), states);
+    VehicleBatch<Vehicle> batch(vehicle, BestLaneKernels(kVehicles), states);
     batch.Advance(track, kTimeStep, 2000, loads(), reply(), true);
     for (int i = 0; i < kVehicles; ++i) states[i] = batch.StateOf(i);
   }

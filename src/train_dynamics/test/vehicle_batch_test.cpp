@@ -277,6 +277,17 @@ TEST_P(LaneKernelsTest, DigestPositionsAndVelocitiesOfEachBody) {
   EXPECT_EQ(of_ltd, digest.value());
 }
 
+TEST(BestLaneKernels, AreNoWiderThanTheVehiclesFill) {
+  const std::vector<LaneKernels>& all = AllLaneKernels();
+  for (int vehicles = 1; vehicles <= 20; ++vehicles) {
+    const int lanes = BestLaneKernels(vehicles).lanes;
+    EXPECT_GE(lanes, std::min(vehicles, all.front().lanes)) << vehicles;
+    for (const LaneKernels& other : all) {
+      if (other.lanes < lanes) EXPECT_LT(other.lanes, vehicles) << vehicles;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, LaneKernelsTest, testing::ValuesIn(AllLaneKernels()),
                          [](const auto& kernels) { return std::string(kernels.param.instruction_set); });
 

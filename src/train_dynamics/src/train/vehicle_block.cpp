@@ -309,7 +309,7 @@ EqualVehicles<Vehicle> MakeBatch(const Vehicle& vehicle, double speed_mps,
     state.origin_m = at;
     states.push_back(state);
   }
-  return EqualVehicles<Vehicle>(vehicle, BestLaneKernels(), states);
+  return EqualVehicles<Vehicle>(vehicle, BestLaneKernels(static_cast<int>(states.size())), states);
 }
 
 Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,

@@ -321,6 +321,12 @@ const std::vector<LaneKernels>& AllLaneKernels() {
   return kernels;
 }
 
+const LaneKernels& BestLaneKernels(int vehicles) {
+  const std::vector<LaneKernels>& all = AllLaneKernels();
+  const int lanes = std::min(vehicles, all.front().lanes);
+  return *std::find_if(all.rbegin(), all.rend(), [&](const auto& kernels) { return kernels.lanes >= lanes; });
+}
+
 template class VehicleBatch<Wagon>;
 template class VehicleBatch<SixAxleVehicle>;
 template class VehicleBatch<LtdVehicle>;

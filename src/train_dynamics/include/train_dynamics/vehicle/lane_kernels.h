@@ -43,7 +43,8 @@ struct LaneKernels {
 /// The kernels that were built and that this machine can run, fastest first. All give the same bits.
 const std::vector<LaneKernels>& AllLaneKernels();
 
-/// The fastest.
-inline const LaneKernels& BestLaneKernels() { return AllLaneKernels().front(); }
+/// The fastest for that many vehicles of one type: those of the widest lanes, but no wider than the vehicles fill. A process
+/// with one vehicle would else compute, and hold in its cache, lanes that are never read.
+const LaneKernels& BestLaneKernels(int vehicles);
 
 }  // namespace train_dynamics
