@@ -140,7 +140,8 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
     CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
   if (static_cast<long>(checkpoint.exchange) >= now.params.Exchanges()) {
     throw std::invalid_argument(
-        fmt::format("{} was taken at the end of the run, {:g} s: nothing is left to simulate; a larger duration_s goes on",
+        fmt::format("{} was taken at the end of the run, {:g} s: nothing is left to simulate; a larger "
+                    "duration_s goes on",
                     (folder / kCheckpointFile).string(),
                     static_cast<double>(checkpoint.exchange) * now.params.exchange_interval_s));
   }

@@ -317,7 +317,8 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
     return train_run::kDifferent;
   }
   if (!run.fault().empty()) {
-    train_console::Print("different: the repeated run failed where the recorded run continued: {}\n", run.fault());
+    train_console::Print("different: the repeated run failed where the recorded run continued: {}\n",
+                         run.fault());
     return train_run::kDifferent;
   }
   if (!comparison.Finished()) {

@@ -95,8 +95,7 @@ class RunOutput {
   std::exception_ptr error_;   ///< the first, where the run goes on
   std::unique_ptr<BagRecorder> bag_;
   std::unique_ptr<CsvRecorder> csv_;
-  std::future<void>
-      to_disk_;  ///< of the last checkpoint; only the next one and the end wait for a disk
+  std::future<void> to_disk_;  ///< of the last checkpoint; only the next one and the end wait for a disk
   std::unique_ptr<RecorderThread> thread_;  ///< ends before what it uses does
 };
 

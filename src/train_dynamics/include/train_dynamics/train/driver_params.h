@@ -48,7 +48,8 @@ struct BuiltInDriverParams {
              "period at which the driver acts, a multiple of exchange_interval_s");
     v.Number("speed_kmh", speed_kmh, Range{0.0, 400.0},
              "speed to hold; not given: as fast as the route's limits allow");
-    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative, "margin that the driver keeps below each limit");
+    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative,
+             "margin that the driver keeps below each limit");
     v.Number("deceleration_mps2", deceleration_mps2, Range{0.0, 1.5},
              "planned deceleration towards lower limits and stops");
     v.Number("response_time_s", response_time_s, kPositive,
@@ -58,11 +59,9 @@ struct BuiltInDriverParams {
     v.Number("recharge_time_s", recharge_time_s, kNonNegative,
              "least time from a release to the next application, if the speed allows");
     v.Number("creep_speed_kmh", creep_speed_kmh, kPositive, "speed of the approach to a stop");
-    v.Number("first_reduction_kpa", first_reduction_kpa, kPositive,
-             "first reduction of the brake pipe");
+    v.Number("first_reduction_kpa", first_reduction_kpa, kPositive, "first reduction of the brake pipe");
     v.Number("reduction_step_kpa", reduction_step_kpa, kPositive, "step between further reductions");
-    v.Number("largest_reduction_kpa", largest_reduction_kpa, kPositive,
-             "largest reduction (full service)");
+    v.Number("largest_reduction_kpa", largest_reduction_kpa, kPositive, "largest reduction (full service)");
     v.Number("sight_m", sight_m, kNonNegative, "distance ahead over which the driver knows the line");
     v.List("stops", stops, "where the driver stops, one after the other");
     v.Check(largest_reduction_kpa >= first_reduction_kpa, "largest_reduction_kpa",

@@ -14,9 +14,9 @@
   X(is_over, "1", "1; 0 of a slide that still goes on")                                                 \
   X(start_m, "m", "position of the wheelset along the track at its start")                              \
   X(end_m, "m", "... at its end")                                                                       \
-  X(slid_m, "m", "distance the tread slid over the rail, >= 0")                                                \
+  X(slid_m, "m", "distance the tread slid over the rail, >= 0")                                         \
   X(locked_s, "s", "time with locked wheels, above 3 km/h")                                             \
-  X(locked_m, "m", "distance run with locked wheels")                                                            \
+  X(locked_m, "m", "distance run with locked wheels")                                                   \
   X(longest_lock_s, "s", "the longest lock in one piece")                                               \
   X(longest_lock_from_s, "s", "when that began; 0 without a lock")                                      \
   X(energy_j, "J", "lost in creep over the slide, both wheels")                                         \
