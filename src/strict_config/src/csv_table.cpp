@@ -77,7 +77,10 @@ class CsvLines {
       if (first == std::string::npos || content[first] == '#') continue;
       if (separator_ == '\0') separator_ = SeparatorOf(content);
       Split(content);
-      return true;
+      const bool is_empty =
+          !is_bad_ && cells_.size() <= CsvLimits::kColumns &&
+          std::all_of(cells_.begin(), cells_.end(), [](const auto& cell) { return cell.empty(); });
+      if (!is_empty) return true;  // ",,": a row that was deleted in a spreadsheet
     }
     return false;
   }

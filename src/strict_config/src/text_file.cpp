@@ -50,6 +50,11 @@ bool IsCleanText(const std::string& text, const std::string& label, ErrorList& e
                            : "is not a text file (it contains a control character)");
       return false;
     }
+    if (byte == '\r' && i + 1 < text.size() && text[i + 1] != '\n') {
+      errors.Add(label, line, "",
+                 "has a carriage return without a line feed; save it with the line ends of Unix or Windows");
+      return false;
+    }
     const std::size_t length = CharacterLength(text, i);
     if (length == 0) {
       errors.Add(label, line, "", "is not a text file in UTF-8");

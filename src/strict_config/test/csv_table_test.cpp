@@ -56,6 +56,7 @@ TEST_F(CsvTest, TakesWhatSpreadsheetsWrite) {
       "time_s,pressure_kpa\n0,500,\n0.1,-450\n",                   // only some lines are
       "time_s;pressure_kpa\n0;500\n0.1;-450\n",                    // semicolons
       "\"time_s\"\t\"pressure_kpa\"\n0\t500\n0.1\t-450\n",         // tabs
+      "time_s,pressure_kpa\n0,500\n,\n0.1,-450\n, \n,,\n\"\",\n",  // rows that were emptied
   };
   for (const char* const text : texts) {
     const CsvTable table = ReadTable(text);

@@ -24,6 +24,16 @@ TEST_F(ConfigTest, FilesThatCannotBeRead) {
   EXPECT_EQ(Errors(), "file/a.yaml: does not exist");
 }
 
+TEST_F(ConfigTest, CarriageReturnsAloneAreNoLineEnds) {
+  const std::string rule =
+      "has a carriage return without a line feed; save it with the line ends of Unix or Windows";
+  EXPECT_EQ(ErrorsOf("consist:\r  - vehicle: {mass_kg: 1}\r"), "a.yaml:1: " + rule);
+  EXPECT_EQ(ErrorsOf("consist: []\r\n# a\rb\r\n"), "a.yaml:2: " + rule);
+  ErrorList errors;
+  ReadCsvTable(Put("old.csv", "time_s,pressure_kpa\r0,500\r"), errors);
+  EXPECT_NE(errors.Text().find("old.csv:1: " + rule), std::string::npos) << errors.Text();
+}
+
 TEST_F(ConfigTest, TextsMayNotCommandTerminals) {
   for (const std::string escape :
        {"\\e[31m", "\\0", "\\a", "\\x7f", "\\x9b2J", "\\u202e", "\\u2066", "\\r"}) {
