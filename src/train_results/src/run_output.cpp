@@ -54,8 +54,15 @@ void MakeFolder(const fs::path& folder) {
   }
   fs::create_directories(folder, error);
   if (!error) return;
-  throw std::runtime_error("the folder " + folder.string() +
-                           " cannot be made for the results: " + error.message());
+  std::string reason = error.message();
+  for (fs::path part = folder; part.has_relative_path(); part = part.parent_path()) {
+    if (fs::is_symlink(fs::symlink_status(part, error)) &&
+        fs::status(part, error).type() == fs::file_type::not_found) {
+      reason = part.string() + " is a symbolic link to " + fs::read_symlink(part, error).string() +
+               ", which does not exist";
+    }
+  }
+  throw std::runtime_error("the folder " + folder.string() + " cannot be made for the results: " + reason);
 }
 
 /// Clears it of the results of an earlier run, but of nothing that a user may have put there.

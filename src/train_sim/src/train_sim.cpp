@@ -83,7 +83,7 @@ const CLI::Validator kPath(
 /// @return the file's option
 CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std::string& file,
                       std::vector<std::string>& overrides) {
-  CLI::Option* input = command->add_option(name, file, help)->required();
+  CLI::Option* input = command->add_option(name, file, help)->check(kPath)->required();
   command
       ->add_option("--set", overrides,
                    "replace a value: --set path=value, e.g. train.connection.draft_gear.slack_m=0.02")
@@ -100,7 +100,7 @@ void RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
   if (std::find(known.begin(), known.end(), given) != known.end()) return;
   const std::string nearest = strict_config::Nearest(given, known);
   throw std::invalid_argument("there is no command " + given +
-                              (nearest.empty() ? "" : "; did you mean " + nearest + "?") +
+                              (nearest.empty() ? "." : "; did you mean " + nearest + "?") +
                               " Commands: " + strict_config::Join(known, known.size()));
 }
 
@@ -227,7 +227,8 @@ int Main(int argc, char** argv) {
       ->add_option("--config", recording.config,
                    "scenario of the run; default: the folder's or the bag's own")
       ->check(kPath);
-  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several");
+  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several")
+      ->check(kPath);
   verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")
       ->check(Count(1, 1024));
   verify->callback([&] { command = [&] { return train_sim::Verify(recording); }; });

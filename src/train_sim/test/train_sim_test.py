@@ -316,7 +316,7 @@ class TrainSimTest(unittest.TestCase):
         for arguments, text in (
             (["runn", EMERGENCY], "there is no command runn; did you mean run?"),
             (["verfy"], "there is no command verfy; did you mean verify?"),
-            (["fly"], "there is no command fly"),
+            (["fly"], "there is no command fly. Commands: run, check"),
             (["run", EMERGENCY, "--tread", "2"], "--tread: did you mean --threads?"),
         ):
             done = train_sim(*arguments)
@@ -338,8 +338,11 @@ class TrainSimTest(unittest.TestCase):
         for name in ("file/below", "loop", "dangling", "x" * 300, "file"):
             done = train_sim("run", DIP, "--out", here / name, *SHORT)
             self.assertEqual(1, done.returncode, name)
-            self.assertRegex(done.stderr, f"{name}( cannot be made for the results: [A-Z]| is not a folder)")
+            self.assertRegex(done.stderr, f"{name}( cannot be made for the results: [A-Z/]| is not a folder)")
             self.assertNotIn("filesystem error", done.stderr)
+        for name in ("dangling", "dangling/below"):
+            done = train_sim("run", DIP, "--out", here / name, *SHORT)
+            self.assertIn(f"{here}/dangling is a symbolic link to /nowhere/at/all, which does not exist", done.stderr)
 
     def test_a_replaced_result_is_told(self):
         self.assertNotIn("replaced", train_sim("run", DIP, "--out", self.out, *SHORT).stderr)
@@ -537,6 +540,12 @@ class TrainSimTest(unittest.TestCase):
             ["verify", self.out, "--config", ""],
             ["route", DIP, "--plot", ""],
             ["new", ""],
+            ["run", "", "--out", self.out],
+            *(
+                [command, ""]
+                for command in ("check", "resolve", "route", "modes", "adhesion", "air-test", "brake-weight")
+            ),
+            ["verify", self.out, "--train", ""],
         ):
             done = train_sim(*arguments)
             self.assertEqual(2, done.returncode, arguments)
