@@ -172,11 +172,16 @@ class Code(unittest.TestCase):
 
     def test_tests_exist(self):
         tests = {path.stem: path.read_text() for path in ROOT.glob("src/*/test/*_test.*")}
+        programs = {path.name: path.read_text() for path in ROOT.glob("src/*/test/*.py")}
         for page in self.NAMED:
             for number, line in enumerate(page.read_text().splitlines(), 1):
-                stem = None
+                stem = program = None
                 for word in re.findall(r"`([^`]+)`", line):
                     with self.subTest(f"{page.relative_to(ROOT)}:{number}"):
+                        if word in programs:
+                            program = word
+                        elif program and re.fullmatch(r"test_\w+", word):
+                            self.assertIn(f"def {word}(", programs[program])
                         if re.fullmatch(r"\w+_test", word) and word != "vehicle_test":
                             stem = word.replace("train_dynamics_", "")
                             self.assertTrue(stem in tests, stem)

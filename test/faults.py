@@ -905,12 +905,15 @@ class Full(Matrix):
         self.assert_same(launch)
         self.note("-", "no effect, same bits")
 
-    @cell("another master", "mid-run")
+    @cell("another master, with a clock of its own (global_clock:=false)", "mid-run")
     def test_other_master(self):
         launch = self.launch(PACED)
         launch.saw(A_QUARTER, SOON)
+        self.call("pause")  # it goes on for as long as the other needs to come up
         started = time.monotonic()
-        other = self.start("ltd_master", "ltd_master", f"_scenario:={SHORT_TRAIN}", "_ranks:=2", name="other")
+        other = self.start(
+            "ltd_master", "ltd_master", f"_scenario:={SHORT_TRAIN}", "_ranks:=2", "_global_clock:=false", name="other"
+        )
         self.assertEqual(4, other.wait(SOON))
         self.named(
             launch,
@@ -919,6 +922,7 @@ class Full(Matrix):
             "refused, its exit code is 4; same bits",
             expected_s=1,
         )  # and its start
+        self.call("resume")
         self.assert_same(launch)
 
 
@@ -989,7 +993,7 @@ class RandomKills(Matrix):
 
     settings = "duration_s=30"
     last_kill_s = 25  # the call that asks for the time takes its own, on a busy machine
-    pace = 1.0
+    pace = 0.5
     kills = 20
     seed = 20200401
     arguments = ()
@@ -1037,6 +1041,10 @@ class RandomKills(Matrix):
 class RandomKillsByTcp(RandomKills):
     seed = 20200402
     arguments = ("shared_memory:=false",)
+
+    @cell("20 kill -9 of random wagon nodes", "the same with shared_memory:=false")
+    def test_random_kills(self):
+        super().test_random_kills()
 
 
 def short():

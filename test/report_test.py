@@ -275,6 +275,11 @@ class ReportTest(unittest.TestCase):
             # Records see every tenth exchange: never more, and in a smooth run hardly less.
             self.assertLessEqual(of_records, of_exchanges * (1 + 1e-6))
             self.assertGreater(of_records, 0.99 * of_exchanges)
+        of_all, of_bag = "Of all exchanges (couplers.csv)", "Of the records of the bag."
+        self.assertIn(of_bag, self.page(self.here / "alone.bag").text)
+        whole = self.page(two_d()).text
+        self.assertIn(of_all, whole)
+        self.assertNotIn(of_bag, whole)
 
     def test_a_bag_without_its_scenario(self):
         def without(topic, *rest):

@@ -208,6 +208,12 @@ class SeveralLaunches(LaunchTest):
         self.assertEqual(2, done.returncode)
         self.assertIn("live must be true or false, got the text 'perhaps'", done.stdout)
 
+    def test_nodes_log_with_wall_time_where_nobody_publishes_a_clock(self):
+        self.tool("rosparam", "set", "/use_sim_time", "true")
+        for package, program in (("ltd_master", "ltd_master"), ("wagon_node", "wagon_node")):
+            log = self.tool("rosrun", package, program, "_nonsense:=1")
+            self.assertRegex(log, r"\[FATAL\] \[1\d{9}\.\d+\]: parameter nonsense is not known", log)
+
     def test_parameters_of_others_are_told(self):
         self.tool("rosparam", "set", "/train/master/record", "false")
         code, log = self.node(f"_scenario:={SHORT_TRAIN}", "_model:=ltd")

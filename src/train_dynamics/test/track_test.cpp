@@ -95,6 +95,31 @@ TEST(Track, GivesTheBitsOfAScanInBothDirections) {
   }
 }
 
+// A scan of all entries at each place would be 10^11 steps, which no time-out of a test allows.
+TEST(Track, OfManyEntriesIsLookedUpWithoutAScan) {
+  constexpr int kEntries = 100000, kPlaces = 1000000;
+  TrackParams params;
+  params.grades.clear();
+  for (int i = 0; i < kEntries; ++i) {
+    const double from = 2.0 * i;
+    params.grades.push_back({from, i % 2 == 0 ? 1.0 : -1.0});
+    params.dips.push_back({from, 1e-3, 1.0});
+    params.friction_patches.push_back({from, from + 1.0, 0.1});
+  }
+  const Track track(params);
+  int uphill = 0, flat = 0, slippery = 0;
+  for (int i = 0; i < kPlaces; ++i) {
+    // In turn near and far, as wheels of a long train that look one after the other.
+    const double x = std::fmod(i * 0.2 + (i % 7) * 1234.5, 2.0 * kEntries) + 0.05;
+    uphill += GradeAt(track, x) > 0.0 ? 1 : 0;
+    flat += RailHeightAt(track, x).height == 0.0 ? 1 : 0;
+    slippery += track.SurfaceAt(x, kOwn).friction_coefficient == 0.1 ? 1 : 0;
+  }
+  EXPECT_NEAR(uphill, kPlaces / 2, kPlaces / 100);  // each lies in half of the length
+  EXPECT_NEAR(flat, kPlaces / 2, kPlaces / 100);
+  EXPECT_EQ(slippery, kPlaces - flat);
+}
+
 TEST(Track, GivesEveryLaneWhatItGivesOneVehicle) {
   constexpr int kCount = 4;
   using Pack = Lanes<kCount>;

@@ -1,15 +1,38 @@
 #include "train_run/train_run.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_results/resume.h"
+
+namespace {
+
+std::mutex g_mutex;
+std::vector<std::string> g_synced;  // names of files, in the order in which the disk had them
+
+int Sync(long number, int descriptor) {
+  const auto file = std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor));
+  const std::scoped_lock lock(g_mutex);
+  g_synced.push_back(file.filename());
+  return static_cast<int>(syscall(number, descriptor));
+}
+
+}  // namespace
+
+// In the place of the C library's, for all of this program.
+extern "C" int fsync(int descriptor) { return Sync(SYS_fsync, descriptor); }
+extern "C" int fdatasync(int descriptor) { return Sync(SYS_fdatasync, descriptor); }
 
 namespace train_run {
 namespace {
@@ -83,6 +106,34 @@ TEST_F(TrainRunTest, InterruptedGoesOnToARecordAndResumedToTheSameBits) {
   EXPECT_EQ(resumed.exit_code(), kSuccess);
   EXPECT_EQ(resumed.master().state_digest(), whole.master().state_digest());
   EXPECT_EQ(travelled_m, end_m - start_m);
+}
+
+TEST_F(TrainRunTest, WhatACheckpointRefersToIsOnTheDiskBeforeIt) {
+  const LoadedScenario scenario = Scenario();
+  train_results::OutputOptions options = Options();
+  options.checkpoint_interval_s = 0.5;
+  options.csv = true;
+  g_synced.clear();
+  {
+    train_results::RunOutput output(options, scenario.files, scenario.params);
+    train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, 1);
+    TrainRun run(scenario.params, scenario.consist, vehicles, scenario.pressures, nullptr, &output);
+    run.Go({});
+    run.Finish(1.0);
+  }
+  int checkpoints = 0;
+  auto since = g_synced.begin();
+  for (auto i = g_synced.begin(); i != g_synced.end(); ++i) {
+    if (i->rfind("checkpoint", 0) != 0) continue;
+    ++checkpoints;
+    const auto has = [&](const std::string& begin) {
+      return std::any_of(since, i, [&](const std::string& name) { return name.rfind(begin, 0) == 0; });
+    };
+    EXPECT_TRUE(has("train.bag")) << checkpoints;
+    EXPECT_TRUE(has("train_history.csv")) << checkpoints;
+    since = i;
+  }
+  EXPECT_GE(checkpoints, 4);
 }
 
 TEST_F(TrainRunTest, AFaultOfTheTransportPassesThroughAndResultsAreKept) {
