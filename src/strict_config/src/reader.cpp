@@ -109,11 +109,7 @@ ReadSession::Spot ReadSession::Locate(const std::string& path) {
   return spot;
 }
 
-Reader::Reader(ReadSession& session, const Place& place)
-    : session_(session),
-      place_(place),
-      errors_before_(session.errors.reports()),
-      errors_before_key_(errors_before_) {
+Reader::Reader(ReadSession& session, const Place& place) : session_(session), place_(place) {
   session.read[place.path.text] = {place.map, place.source, place.path.part};
 }
 
@@ -203,9 +199,14 @@ void Reader::Check(bool ok, const std::string& key, const std::string& rule, con
   } else if (!spot.value && number != nullptr) {
     text += ", got " + ShortestDecimal(number->value) + " (default)";
   }
-  std::vector<std::string> keys(reads.begin(), reads.end());
-  if (!keys.empty()) keys.push_back(FirstStep(key));
-  broken_rules_.push_back({spot.source, spot.path, text, keys});
+  // Of a map under the key, the rule reads what it says.
+  std::vector<std::string> read;
+  if (!is_reference || reads.empty()) read.push_back(spot.path.text);
+  for (const char* other : reads) read.push_back(Path(other).text);
+  for (const std::string& other : reads.empty() ? known_ : std::vector<std::string>()) {
+    if (FindKey(rule, other) != std::string::npos) read.push_back(Path(other).text);
+  }
+  broken_rules_.push_back({spot.source, spot.path, text, read});
 }
 
 std::filesystem::path Reader::FolderOf(const std::string& key) {
@@ -217,12 +218,6 @@ std::string Reader::PlaceOf(const std::string& path) const {
   const Source source = session_.Locate(Path(path).text).source;
   const bool has_line = source.document->has_lines && source.line > 0;
   return source.document->label + (has_line ? ":" + std::to_string(source.line) : "");
-}
-
-void Reader::BeginKey(const std::string& key) {
-  if (session_.errors.reports() != errors_before_key_) wrong_.push_back(key_);
-  key_ = key;
-  errors_before_key_ = session_.errors.reports();
 }
 
 void Reader::NoteNumber(const char* key, double value, bool is_default) {
@@ -291,7 +286,6 @@ std::optional<int> Reader::ReadInteger(const Value& value, const char* key, cons
 }
 
 Reader::Value Reader::Find(const char* key) {
-  BeginKey(key);
   if (!IsIn(known_, key)) known_.emplace_back(key);
   const KeyPath path = Path(key);
   if (const NodePtr given = session_.overrides.Take(path.text)) return {given, given->source, path};
@@ -409,7 +403,6 @@ std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, cons
 }
 
 void Reader::Finish() {
-  BeginKey("");
   static const std::vector<Entry> kNone;
   for (const Entry& entry : place_.map ? place_.map->entries : kNone) {
     if (IsIn(known_, entry.key)) continue;
@@ -422,14 +415,16 @@ void Reader::Finish() {
     given->used = true;
     given->value->source.Report(session_.errors, Path(step), "is not a known key" + KeyHint(step, known_));
   }
-  const bool all_right = session_.errors.reports() == errors_before_;
-  for (const BrokenRule& rule : broken_rules_) {
-    const bool is_void = rule.keys.empty()
-                             ? !all_right
-                             : std::any_of(rule.keys.begin(), rule.keys.end(),
-                                           [this](const auto& key) { return IsIn(wrong_, key); });
-    if (!is_void) rule.source.Report(session_.errors, rule.path, rule.text);
-  }
+  // All are judged before the first is reported: one broken rule does not void another.
+  const auto is_read = [this](const std::string& path) { return session_.read.count(path) > 0; };
+  const auto is_void = [&](const BrokenRule& rule) {
+    return std::any_of(rule.read.begin(), rule.read.end(),
+                       [&](const std::string& path) { return session_.errors.Concerns(path, is_read); });
+  };
+  broken_rules_.erase(std::remove_if(broken_rules_.begin(), broken_rules_.end(), is_void),
+                      broken_rules_.end());
+  for (const BrokenRule& rule : broken_rules_) rule.source.Report(session_.errors, rule.path, rule.text);
+  broken_rules_.clear();
 }
 
 void Reader::ReportMissing(const char* key, const std::string& rule) {

@@ -97,7 +97,78 @@ TEST_F(ConfigTest, NullMeansNoneForOptionalParts) {
 TEST_F(ConfigTest, RulesBetweenFieldsAreJudgedLast) {
   EXPECT_EQ(ErrorsOf<Coupler>("preload_n: 0\nslack_m: 2\n"),
             "a.yaml:2: slack_m must be less than the length of a vehicle, got 2");
-  EXPECT_EQ(ErrorsOf<Coupler>("slack_m: 2\npreload_n: -1\n"), "a.yaml:2: preload_n must be >= 0, got -1");
+  EXPECT_EQ(ErrorsOf<Coupler>("slack_m: x\n"), "a.yaml:1: slack_m must be a number, got 'x'");
+}
+
+struct Controller {
+  double period_s = kRequired;
+  double gain = 1.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("period_s", period_s, kPositive, "of the test");
+    v.Number("gain", gain, kPositive, "of the test");
+  }
+};
+
+struct Car {
+  int seats = kRequiredInteger;
+  Controller controller;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Integer("seats", seats, Range{1, 100, false, false}, "of the test");
+    v.Part("controller", controller, "controllers", "of the test");
+  }
+};
+
+struct Tram {
+  double dt_s = 0.1;
+  int most_seats = 100;
+  std::vector<Car> cars;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Number("dt_s", dt_s, kPositive, "of the test");
+    v.Integer("most_seats", most_seats, Range{1, 1000, false, false}, "of the test");
+    v.List("cars", cars, "of the test");
+    int seats = 0;
+    for (std::size_t i = 0; i < cars.size(); ++i) {
+      v.Check(cars[i].controller.period_s >= dt_s, "cars[" + std::to_string(i) + "].controller.period_s",
+              "must be at least dt_s", {"dt_s"});
+      seats += cars[i].seats;
+    }
+    v.Check(seats <= most_seats, "most_seats", "must be at least the seats of all", {"cars[].seats"});
+  }
+};
+
+TEST_F(ConfigTest, RulesAreJudgedWhateverElseIsWrong) {
+  Put("controllers/slow.yaml", "period_s: 0.01\n");
+  // Besides an entry of the same list, a key of the same part, and a part that is not there.
+  EXPECT_EQ(
+      ErrorsOf<Tram>("cars:\n"
+                     "- {seats: 5, controller: {period_s: 0.01, gain: -1}}\n"
+                     "- {seats: 5, controller: quick}\n"
+                     "most_seats: 9\n"
+                     "speed: 3\n"),
+      "a.yaml:2: cars[0].controller.gain must be > 0, got -1\n"
+      "a.yaml:2: cars[0].controller.period_s must be at least dt_s (0.1, default), got 0.01\n"
+      "a.yaml:3: cars[1].controller names 'quick', but there is no quick.yaml in controllers (there: slow)\n"
+      "a.yaml:4: most_seats must be at least the seats of all, got 9\n"
+      "a.yaml:5: speed is not a known key; known keys: dt_s, most_seats, cars");
+  // Void by what they read: a number of one entry, an entry that cannot be read, a number beside the list.
+  EXPECT_EQ(
+      ErrorsOf<Tram>("cars:\n- {seats: 5, controller: slow}\n- {seats: x, controller: slow}\nmost_seats: 2\n"
+                     "dt_s: x\n"),
+      "a.yaml:3: cars[1].seats must be a number, got 'x'\na.yaml:5: dt_s must be a number, got 'x'");
+  EXPECT_EQ(ErrorsOf<Tram>("dt_s: 1e-3\ncars:\n- {seats: 5, controller: slow}\n- 7\nmost_seats: 2\n"),
+            "a.yaml:4: cars[1] must be a map, got 7");
+}
+
+TEST_F(ConfigTest, ABrokenRuleDoesNotVoidAnother) {
+  EXPECT_EQ(ErrorsOf<Tram>("dt_s: 1\ncars:\n- {seats: 5, controller: {period_s: 0.5}}\nmost_seats: 4\n"),
+            "a.yaml:3: cars[0].controller.period_s must be at least dt_s (1), got 0.5\n"
+            "a.yaml:4: most_seats must be at least the seats of all, got 4");
 }
 
 TEST_F(ConfigTest, RootNameLeadsThePath) {

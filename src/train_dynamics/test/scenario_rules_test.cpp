@@ -218,7 +218,8 @@ TEST_F(ScenarioRules, BrakesThatDoNotSuitTheTrain) {
   Put("brakes/vent_only.yaml", "base: calibrated\nsources: [{vehicle: 1, releases: false}]\n");
   const std::string file = Put("scenarios/a.yaml", "base: minimum\nbrake: vent_only\n");
   EXPECT_EQ(ErrorsOf(file),
-            "scenarios/a.yaml:2: brake must have a source that releases the brakes, as commands[1] demands");
+            "brakes/vent_only.yaml:2: brake.sources must list a source that releases the brakes, as "
+            "commands[1] demands");
   Put("brakes/weak.yaml", "base: vent_only\nemergency: {rise_rate_per_s: 0.1}\n");
   Put("scenarios/b.yaml", "base: emergency\nbrake: weak\n");
   EXPECT_EQ(ErrorsOf(Scenario("b")),
@@ -346,6 +347,72 @@ TEST_F(ScenarioRules, AreJudgedBesideErrorsInKeysThatTheyDoNotRead) {
       "scenarios/a.yaml:2: initial_speed_kmh must be a number, got 'fast'");
 }
 
+TEST_F(ScenarioRules, WhatReadsTheTrainIsJudgedBesideErrorsOfTheTrain) {
+  const std::string errors = ErrorsOf(Put("scenarios/a.yaml",
+                                          "base: single_wagon_stop\n"
+                                          "train:\n"
+                                          "  name: t\n"
+                                          "  connection: friction_gear\n"
+                                          "  consist:\n"
+                                          "  - {vehicle: {base: ore_wagon, kolour: red}, count: 3}\n"
+                                          "  - {vehicle: ore_wagon, count: 2, initial_throttle_notch: 3}\n"
+                                          "detail_vehicles: [6]\n"
+                                          "brake:\n"
+                                          "  base: single_vehicle\n"
+                                          "  sources: [{vehicle: 9, application_delay_s: -1}]\n"
+                                          "commands:\n"
+                                          "- {time_s: 2, kind: apply, reduction_kpa: 1000}\n"
+                                          "- {time_s: 1, kind: emergency, colour: red}\n"
+                                          "- {time_s: 3, kind: throttle, notch: 2}\n"));
+  for (const char* error :
+       {"6: train.consist[0].vehicle.kolour is not a known key",
+        "7: train.consist[1].initial_throttle_notch must be at most 0", "8: detail_vehicles[0] must be in",
+        "11: brake.sources[0].vehicle must be in", "11: brake.sources[0].application_delay_s must be",
+        "13: commands[0].reduction_kpa must be in", "14: commands[1].time_s must be at least",
+        "14: commands[1].colour is not a known key", "15: commands[2].kind must not be throttle"}) {
+    EXPECT_NE(errors.find("scenarios/a.yaml:" + std::string(error)), std::string::npos) << error << "\n"
+                                                                                        << errors;
+  }
+}
+
+TEST_F(ScenarioRules, TracksAreJudgedBesideErrorsOfOtherEntries) {
+  const std::string errors =
+      ErrorsOf(Put("scenarios/a.yaml",
+                   "base: single_wagon_stop\n"
+                   "track:\n"
+                   "  name: t\n"
+                   "  grades:\n"
+                   "  - {from_m: 100, grade_permille: 2}\n"
+                   "  - {from_m: 50, grade_permille: x}\n"
+                   "  friction_patches:\n"
+                   "  - {from_m: 10, to_m: 20, adhesion: low}\n"
+                   "  - {from_m: 20.5, to_m: 30, adhesion: {base: wet, slip_reduction: 2}}\n"
+                   "  curves:\n"
+                   "  - {from_m: 0, to_m: 100, radius_m: 300}\n"
+                   "  - {from_m: 90, to_m: 200, radius_m: 3}\n"));
+  for (const char* error :
+       {"6: track.grades[1].from_m must be greater than", "6: track.grades[1].grade",
+        "track.friction_patches[1].ramp_length_m must leave room",
+        "9: track.friction_patches[1].adhesion.slip_reduction",
+        "12: track.curves[1].from_m must be at least to_m", "12: track.curves[1].radius_m"})
+    EXPECT_NE(errors.find(error), std::string::npos) << error << "\n" << errors;
+}
+
+TEST_F(ScenarioRules, TrappedAirNeedsABrakeThatActs) {
+  Put("p.csv", "time_s,p_kpa[1]\n0,0\n10,100\n");
+  const std::string trapped = "train.consist[0].trapped_cylinder_pressure_kpa=200";
+  EXPECT_EQ(ErrorsOf(Scenario("single_wagon_stop"), {trapped}), "");
+  EXPECT_EQ(ErrorsOf(Scenario("single_wagon_stop"), {trapped, "pressure_table=../p.csv"}),
+            "--set " + trapped +
+                ": train.consist[0].trapped_cylinder_pressure_kpa needs brake: a pressure_table has the "
+                "pressures of all vehicles, got 200");
+  EXPECT_EQ(ErrorsOf(Scenario("single_wagon_stop"),
+                     {trapped, "train.consist[0].vehicle.brake_rigging.cut_out=true"}),
+            "--set " + trapped +
+                ": train.consist[0].trapped_cylinder_pressure_kpa has no effect in a vehicle with "
+                "brake_rigging.cut_out, got 200");
+}
+
 // ---- pressure tables
 
 TEST_F(ScenarioRules, PressureTablesCountFromWhereTheyAreNamed) {
@@ -470,7 +537,7 @@ TEST_F(ScenarioRules, ASmallerReductionNeedsASourceThatReleases) {
     ADD_FAILURE() << "was taken";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("brake must have a source that releases the brakes, as commands[1] demands"),
+                  .find("brake.sources must list a source that releases the brakes, as commands[1] demands"),
               std::string::npos)
         << error.what();
   }
@@ -543,15 +610,16 @@ TEST_F(ScenarioRules, RampsOfPatchesNameTheirEntries) {
                                "  - {from_m: 20.5, to_m: 30, adhesion: {base: wet, slip_reduction: 0.2}, "
                                "ramp_length_m: 2}\n"
                                "  - {from_m: 60, to_m: 70, adhesion: low, friction_coefficient: 0.1}\n");
-  EXPECT_EQ(ErrorsOf(file),
-            "scenarios/a.yaml:7: track.friction_patches[2].friction_coefficient must not stand beside "
-            "adhesion, which "
-            "has one, got 0.1");
-  EXPECT_EQ(
-      ErrorsOf(file, {"track.friction_patches[2]={from_m: 60, to_m: 70, friction_coefficient: 0.1}"}),
+  const std::string ramps =
       "scenarios/a.yaml:6: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
       "surface: half of a ramp lies on each side of an end, and the ones at 20 m (1 m long) and 20.5 m (2 m) "
-      "overlap, got 2");
+      "overlap, got 2";
+  EXPECT_EQ(ErrorsOf(file),
+            ramps +
+                "\nscenarios/a.yaml:7: track.friction_patches[2].friction_coefficient must not "
+                "stand beside adhesion, which has one, got 0.1");
+  EXPECT_EQ(ErrorsOf(file, {"track.friction_patches[2]={from_m: 60, to_m: 70, friction_coefficient: 0.1}"}),
+            ramps);
 }
 
 TEST_F(ScenarioRules, ControllersGearTablesAndRampsAreToldAllAtOnce) {
@@ -574,7 +642,7 @@ TEST_F(ScenarioRules, ControllersGearTablesAndRampsAreToldAllAtOnce) {
           "        wheel_slide_protection: {controller: threshold_3stat}\n"
           "    - vehicle:\n"
           "        base: ore_wagon_empty\n"
-          "        wheel_slide_protection: threshold_3state\n"
+          "        wheel_slide_protection: {base: threshold_3state, sampling_period_s: 0.0205}\n"
           "      count: 2\n"
           "      vehicles_per_unit: 2\n"
           "      unit_connection:\n"
@@ -610,7 +678,11 @@ TEST_F(ScenarioRules, ControllersGearTablesAndRampsAreToldAllAtOnce) {
       tells("32: track.friction_patches[1].ramp_length_m must leave room to the next change of the "
             "surface"))
       << errors;
-  EXPECT_EQ(3, std::count(errors.begin(), errors.end(), '\n')) << "four errors, and no other:\n" << errors;
+  EXPECT_TRUE(
+      tells("18: train.consist[1].vehicle.wheel_slide_protection.sampling_period_s must be a multiple of "
+            "dt_s (0.001, default), got 0.0205"))
+      << errors;
+  EXPECT_EQ(4, std::count(errors.begin(), errors.end(), '\n')) << "five errors, and no other:\n" << errors;
 }
 
 TEST_F(ScenarioRules, WarnsOfPatchesAndDipsOutOfReach) {

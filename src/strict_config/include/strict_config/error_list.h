@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -43,6 +44,10 @@ class ErrorList {
   /// Whether there are so many that further ones are only counted.
   bool full() const { return errors_.size() >= kKept; }
 
+  /// Whether what a path leads to is wrong: an error was reported at the path, below it, or above it where `is_read`
+  /// says that the map there was not read. "[]" in the path stands for every index: "consist[].count".
+  bool Concerns(const std::string& path, const std::function<bool(const std::string&)>& is_read) const;
+
   /// The first `shown` errors, one per line, and how many there are beyond.
   std::string Text(std::size_t shown = 50) const;
 
@@ -59,6 +64,7 @@ class ErrorList {
   std::size_t reports_ = 0;
   std::map<std::string, std::size_t> file_order_;
   std::set<std::string> seen_;
+  std::set<std::string> paths_;  ///< of what was reported, as long as not full()
 };
 
 /// A configuration that cannot be used; what() is ErrorList::Text().

@@ -196,7 +196,6 @@ class Reader {
   std::optional<std::size_t> ReadChoice(const char* key, const std::vector<std::string>& names);
   std::optional<double> ReadNumber(const Value& value, const char* key, const Range& range);
   std::optional<int> ReadInteger(const Value& value, const char* key, const Range& range);
-  void BeginKey(const std::string& key);
   void NoteNumber(const char* key, double value, bool is_default);
   struct Shown;
   const Shown* FindNumber(const std::string& key) const;
@@ -245,10 +244,6 @@ class Reader {
   ReadSession& session_;
   const Place place_;
   std::vector<std::string> known_;  ///< the keys that were asked for
-  std::size_t errors_before_;       ///< the number of reports when this struct's visit began
-  std::string key_;                 ///< that is being read
-  std::size_t errors_before_key_;   ///< the number of reports when that began
-  std::vector<std::string> wrong_;  ///< the keys under which something was reported
 
   /// What a rule may have to show of a number.
   struct Shown {
@@ -262,7 +257,7 @@ class Reader {
     Source source;
     KeyPath path;
     std::string text;
-    std::vector<std::string> keys;  ///< of this struct that it reads; empty: perhaps all of them
+    std::vector<std::string> read;  ///< paths of what it reads
   };
   std::vector<BrokenRule> broken_rules_;  ///< Checks that failed; void if what they read is wrong
 };

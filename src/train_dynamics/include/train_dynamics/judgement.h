@@ -3,16 +3,29 @@
 #include <cstddef>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "train_dynamics/parameters.h"
 
 namespace train_dynamics {
 
-/// A rule between the parts of a configuration that does not hold, as a visitor's Check takes it.
+/// A rule between the parts of a configuration that does not hold.
 struct BrokenRule {
   std::string key, text;
-  Keys reads;
+  std::vector<std::string>
+      reads;  ///< paths of what it reads besides `key`; "[]" in a path: all entries of a list
 };
+
+/// Tells a visitor of them.
+template <class Visitor>
+void Check(const std::vector<BrokenRule>& broken, Visitor& v) {
+  for (const BrokenRule& rule : broken) {
+    Keys reads;
+    for (const std::string& path : rule.reads) reads.push_back(path.c_str());
+    if (reads.empty()) reads.push_back(rule.key.c_str());
+    v.Check(false, rule.key, rule.text, reads);
+  }
+}
 
 /// Something that is allowed but most likely not meant, or beyond what was shown to work.
 struct Warning {

@@ -11,4 +11,7 @@ int VehicleIndex(int number, int vehicles);
 /// What the number of a vehicle must be, as the rule of an error message.
 std::string VehicleRule(int vehicles);
 
+/// What such a rule reads in a scenario.
+inline constexpr char kVehicleCounts[] = "train.consist[].count";
+
 }  // namespace train_dynamics

@@ -143,7 +143,7 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
                       "must list at most " + std::to_string(kMostArrivals / per_command) + " commands for " +
                           std::to_string(vehicles) + " vehicles and " + std::to_string(sources.size()) +
                           " brake sources",
-                      {"brake", "train"}});
+                      {"brake.sources", kVehicleCounts}});
     return broken;
   }
   const std::vector<double>& measured = service.reduction_kpa;
@@ -157,11 +157,11 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
       const Range range{measured.front(), measured.back(), false, false};
       broken.push_back({"commands" + Index(i) + ".reduction_kpa",
                         range.Rule() + " (brake.service.reduction_kpa)",
-                        {"brake"}});
+                        {"brake.service.reduction_kpa"}});
     }
     if (!releases && (command.kind == BrakeCommandKind::kRelease || IsRelease(obeyed[i].effect))) {
-      broken.push_back({"brake",
-                        "must have a source that releases the brakes, as commands" + Index(i) + " demands",
+      broken.push_back({"brake.sources",
+                        "must list a source that releases the brakes, as commands" + Index(i) + " demands",
                         {"commands"}});
     }
   }
@@ -169,7 +169,8 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
     const BrakeSourceParams& source = sources[i];
     if (VehicleIndex(source.vehicle, vehicles) >= 0) continue;
     const std::string which = source.name.empty() ? "" : " (" + source.name + ")";
-    broken.push_back({"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {"train"}});
+    broken.push_back(
+        {"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {kVehicleCounts}});
   }
   return broken;
 }

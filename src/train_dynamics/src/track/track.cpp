@@ -112,10 +112,10 @@ std::vector<SurfaceChange> ChangesOf(const std::vector<FrictionPatchParams>& pat
 
 // ---- the rules between entries -------------------------------------------------------------------------------------
 
-std::vector<TrackParams::BrokenRule> TrackParams::BrokenRules() const {
+std::vector<BrokenRule> TrackParams::BrokenRules() const {
   std::vector<BrokenRule> broken;
   JudgeOrder(broken);
-  if (broken.empty()) JudgeHeights(broken);
+  JudgeHeights(broken);
   JudgePoints(broken);
   JudgeDips(broken);
   JudgeRamps(broken);
@@ -135,47 +135,53 @@ void JudgeRising(const std::vector<Entry>& entries, const Position& position, co
 void TrackParams::JudgeOrder(std::vector<BrokenRule>& broken) const {
   const auto judge = [&](const auto& entries, const char* list, const char* key, const auto& position) {
     JudgeRising(entries, position, [&](std::size_t i, const std::string& text) {
-      broken.push_back({list + Index(i) + "." + key, text, list});
+      broken.push_back({list + Index(i) + "." + key, text, {list + Index(i - 1) + "." + key}});
     });
   };
   judge(grades, "grades", "from_m", [](const GradeParams& grade) { return grade.from_m; });
   judge(heights, "heights", "position_m", [](const HeightParams& height) { return height.position_m; });
   judge(speed_limits, "speed_limits", "from_m", [](const SpeedLimitParams& limit) { return limit.from_m; });
+  const auto position = [this](std::size_t i) {
+    return "points" + Index(i) + (points[i].position_m ? ".position_m" : ".position_km");
+  };
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || points[i].Position() > points[i - 1].Position()) continue;
     broken.push_back(
-        {"points" + Index(i) + (points[i].position_m ? ".position_m" : ".position_km"),
+        {position(i),
          "must lie behind that of the entry before, at " + ShortestDecimal(points[i - 1].Position()) + " m",
-         "points"});
+         {position(i - 1)}});
   }
   for (std::size_t i = 1; i < curves.size(); ++i) {
     if (curves[i].from_m >= curves[i - 1].to_m) continue;
     broken.push_back({"curves" + Index(i) + ".from_m",
                       "must be at least to_m of the entry before, " + ShortestDecimal(curves[i - 1].to_m),
-                      "curves"});
+                      {"curves" + Index(i - 1) + ".to_m"}});
   }
 }
 
 /// Grades that heights make are judged like those that are given.
 void TrackParams::JudgeHeights(std::vector<BrokenRule>& broken) const {
   constexpr double kSteepest = 0.2;
-  const auto judge = [&](std::size_t i, const HeightParams& before, const HeightParams& here,
-                         const char* list) {
+  const auto judge = [&](const std::string& list, std::size_t last, const HeightParams& before, std::size_t i,
+                         const HeightParams& here) {
+    if (here.position_m <= before.position_m) return;  // said
     const double grade = (here.height_m - before.height_m) / (here.position_m - before.position_m);
     if (std::abs(grade) <= kSteepest) return;
     broken.push_back({list + Index(i) + ".height_m",
                       "must not make a grade steeper than 20 % from the height before, " +
                           ShortestDecimal(before.height_m) + " m at " + ShortestDecimal(before.position_m) +
                           " m",
-                      list});
+                      {list + Index(i), list + Index(last)}});
   };
-  for (std::size_t i = 1; i < heights.size(); ++i) judge(i, heights[i - 1], heights[i], "heights");
+  for (std::size_t i = 1; i < heights.size(); ++i) judge("heights", i - 1, heights[i - 1], i, heights[i]);
   std::optional<HeightParams> before;
+  std::size_t last = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].height_m) continue;
     const HeightParams here{points[i].Position(), *points[i].height_m};
-    if (before) judge(i, *before, here, "points");
+    if (before) judge("points", last, *before, i, here);
     before = here;
+    last = i;
   }
 }
 
@@ -190,7 +196,7 @@ void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
     const std::optional<std::size_t> first = first_with(has);
     if (!first || !is_given) return;
     broken.push_back(
-        {"points" + Index(*first) + "." + key, std::string("must not stand beside ") + other, "points"});
+        {"points" + Index(*first) + "." + key, std::string("must not stand beside ") + other, {}});
   };
   using Point = RoutePointParams;
   const auto has_grade = [](const Point& p) { return p.Grade().has_value(); };
@@ -212,7 +218,7 @@ void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
       "friction_coefficient", [](const Point& p) { return p.friction_coefficient.has_value(); },
       !friction_patches.empty(), "friction_patches");
   if (!heights.empty() && !grades.empty())
-    broken.push_back({"heights", "must not stand beside grades", "grades"});
+    broken.push_back({"heights", "must not stand beside grades", {"grades"}});
 }
 
 void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
@@ -228,7 +234,7 @@ void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
                       "must not overlap so many others: up to " + ShortestDecimal(at_m) +
                           " m the stretches between ends of dips lie in more than " +
                           std::to_string(kMostDipOverlaps) + " dips in all",
-                      "dips"});
+                      {"dips"}});
     return false;
   });
 }
@@ -242,13 +248,14 @@ void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
     if (one.End() <= next.Begin() + kRounding) continue;
     // The ramp that is there is named before a sharp end.
     const SurfaceChange& named = next.ramp_m > 0.0 ? next : one;
-    broken.push_back({"friction_patches" + Index(named.patch) + ".ramp_length_m",
-                      "must leave room to the next change of the surface: half of a ramp lies on each side "
-                      "of an end, and the ones "
-                      "at " +
-                          ShortestDecimal(one.at_m) + " m (" + ShortestDecimal(one.ramp_m) + " m long) and " +
-                          ShortestDecimal(next.at_m) + " m (" + ShortestDecimal(next.ramp_m) + " m) overlap",
-                      "friction_patches"});
+    broken.push_back(
+        {"friction_patches" + Index(named.patch) + ".ramp_length_m",
+         "must leave room to the next change of the surface: half of a ramp lies on each side "
+         "of an end, and the ones "
+         "at " +
+             ShortestDecimal(one.at_m) + " m (" + ShortestDecimal(one.ramp_m) + " m long) and " +
+             ShortestDecimal(next.at_m) + " m (" + ShortestDecimal(next.ramp_m) + " m) overlap",
+         {"friction_patches[].from_m", "friction_patches[].to_m", "friction_patches[].ramp_length_m"}});
   }
 }
 

@@ -20,6 +20,10 @@ std::string WhyNot(const LocomotiveCommand& command, const TractionParams& tract
   return "must be at most " + std::to_string(notches) + ", the highest notch of a throttle of this train";
 }
 
+// What rules read of all groups.
+const char kTraction[] = "train.consist[].vehicle.traction";
+const char kLocomotive[] = "train.consist[].locomotive";
+
 }  // namespace
 
 std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command, const std::string& key,
@@ -31,9 +35,9 @@ std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command,
     const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
     const int vehicle = VehicleIndex(command.vehicles[j], count);
     if (vehicle < 0) {
-      broken.push_back({entry, VehicleRule(count), {"train"}});
+      broken.push_back({entry, VehicleRule(count), {kVehicleCounts}});
     } else if (!train.VehicleAt(vehicle).traction) {
-      broken.push_back({entry, "must be a locomotive: a vehicle with traction", {"train"}});
+      broken.push_back({entry, "must be a locomotive: a vehicle with traction", {kVehicleCounts, kTraction}});
     } else {
       obey.push_back(&*train.VehicleAt(vehicle).traction);
     }
@@ -46,14 +50,14 @@ std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command,
       broken.push_back({key + ".kind",
                         "must not be throttle or dynamic_brake for a train without a locomotive: no vehicle "
                         "has traction",
-                        {"train"}});
+                        {kTraction}});
     }
   }
   for (const TractionParams* traction : obey) {
     const std::string why_not = WhyNot(command, *traction);
     if (why_not.empty()) continue;
     const bool is_kind = why_not.find("throttle for") != std::string::npos;
-    broken.push_back({key + (is_kind ? ".kind" : ".notch"), why_not, {"train"}});
+    broken.push_back({key + (is_kind ? ".kind" : ".notch"), why_not, {kVehicleCounts, kTraction}});
     break;
   }
   return broken;
@@ -72,28 +76,30 @@ std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand
     const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
     const int vehicle = VehicleIndex(command.vehicles[j], count);
     if (vehicle < 0) {
-      broken.push_back({entry, VehicleRule(count), {"train"}});
+      broken.push_back({entry, VehicleRule(count), {kVehicleCounts}});
     } else if (!is_locomotive[vehicle]) {
       broken.push_back({entry,
                         "must be a locomotive: a vehicle with traction, or of a group with locomotive: true",
-                        {"train"}});
+                        {kVehicleCounts, kTraction, kLocomotive}});
     }
   }
   const std::string what =
       command.kind == LocomotiveBrakeCommandKind::kBailOff ? "bail_off" : "independent_brake";
   if (command.vehicles.empty() && std::count(is_locomotive.begin(), is_locomotive.end(), 1) == 0)
-    broken.push_back({key + ".kind", "must not be " + what + " for a train without a locomotive", {"train"}});
+    broken.push_back({key + ".kind",
+                      "must not be " + what + " for a train without a locomotive",
+                      {kTraction, kLocomotive}});
   if (command.kind == LocomotiveBrakeCommandKind::kBailOff && brake.kind != BrakeSystemKind::kPneumatic)
     broken.push_back(
         {key + ".kind",
          "must not be bail_off with a brake of kind empirical, which has no cylinders that could be "
          "emptied: take a brake of kind pneumatic",
-         {"brake"}});
+         {"brake.kind"}});
   if (command.pressure_kpa > brake.locomotive_brake.maximum_independent_kpa)
     broken.push_back({key + ".pressure_kpa",
                       "must be at most brake.locomotive_brake.maximum_independent_kpa, " +
                           ShortestDecimal(brake.locomotive_brake.maximum_independent_kpa),
-                      {"brake"}});
+                      {"brake.locomotive_brake.maximum_independent_kpa"}});
   return broken;
 }
 

@@ -19,6 +19,16 @@ std::string KnownNames(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string OfGroup(std::size_t group) { return "train.consist" + ListIndex(group); }
+
+// What rules read of all groups.
+const char kModels[] = "train.consist[].model";
+const char kNames[] = "train.consist[].name";
+const char kTraction[] = "train.consist[].vehicle.traction";
+const std::vector<std::string> kWhichBrake = {"pressure_table", "brake.kind"};
+const std::vector<std::string> kStations = {"track.stations", "track.points[].station",
+                                            "track.points[].position_m", "track.points[].position_km"};
+
 }  // namespace
 
 std::string RuleOfGroup(const DriverCommand& command, const TrainParams& train) {
@@ -110,21 +120,21 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     if (ModelOfGroup(i) != VehicleModel::kTwoD || !train.consist[i].vehicle.IsOneMass()) continue;
     broken.push_back(
-        {"train.consist" + ListIndex(i) + ".vehicle.mass_kg",
+        {OfGroup(i) + ".vehicle.mass_kg",
          "is all that the vehicle has, but the 2d model needs its bodies (carbody, bolster, bogie_frame, "
          "wheelset ...); run it with the ltd model, or say model: ltd for the group",
-         {"train", "model"}});
+         {"model", OfGroup(i) + ".model"}});
   }
   const int vehicles = train.VehicleCount();
   for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
     const int vehicle = VehicleIndex(detail_vehicles[i], vehicles);
     if (vehicle < 0) {
-      broken.push_back({"detail_vehicles" + ListIndex(i), VehicleRule(vehicles), {"train"}});
+      broken.push_back({"detail_vehicles" + ListIndex(i), VehicleRule(vehicles), {kVehicleCounts}});
     } else if (VehicleModels()[vehicle] == VehicleModel::kTwoD &&
                train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
       broken.push_back({"detail_vehicles" + ListIndex(i),
                         "must be a vehicle with wheelsets_per_bogie 2: full detail is not recorded of others",
-                        {"train"}});
+                        {kVehicleCounts, "model", kModels, "train.consist[].vehicle.wheelsets_per_bogie"}});
     }
   }
   JudgeDriver(broken);
@@ -142,7 +152,8 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
       continue;
     }
     if (!named[i].group.empty()) {
-      broken.push_back({"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {"train"}});
+      broken.push_back(
+          {"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {kNames, kTraction}});
       continue;
     }
     if (commands[i].IsOfLocomotiveBrakes() && brake) {
@@ -163,9 +174,9 @@ void ScenarioParams::JudgeNodes(std::vector<BrokenRule>& broken) const {
     const std::string& node = train.consist[i].external;
     for (std::size_t other = 0; !node.empty() && other < i; ++other) {
       if (train.consist[other].external != node) continue;
-      broken.push_back({"train.consist" + ListIndex(i) + ".external",
+      broken.push_back({OfGroup(i) + ".external",
                         "must differ from that of consist" + ListIndex(other) + ": a node moves one group",
-                        {"train"}});
+                        {OfGroup(other) + ".external"}});
       break;
     }
   }
@@ -173,14 +184,16 @@ void ScenarioParams::JudgeNodes(std::vector<BrokenRule>& broken) const {
 
 void ScenarioParams::JudgeTimes(std::vector<BrokenRule>& broken) const {
   double last_s = 0.0;
+  std::size_t last = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!commands[i].time_s) continue;
     if (*commands[i].time_s < last_s) {
       broken.push_back({"commands" + ListIndex(i) + ".time_s",
                         "must be at least that of the command before, " + ShortestDecimal(last_s) + " s",
-                        {"commands"}});
+                        {"commands" + ListIndex(last) + ".time_s"}});
     }
     last_s = *commands[i].time_s;
+    last = i;
   }
 }
 
@@ -207,7 +220,7 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
 void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const ConsistGroupParams& group = train.consist[i];
-    const std::string key = "train.consist" + ListIndex(i) + ".initial_";
+    const std::string key = OfGroup(i) + ".initial_";
     for (const bool is_throttle : {true, false}) {
       const double notch = is_throttle ? group.initial_throttle_notch : group.initial_dynamic_brake_notch;
       if (notch == 0.0) continue;
@@ -219,13 +232,18 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
       if (notch <= notches) continue;
       broken.push_back({key + (is_throttle ? "throttle_notch" : "dynamic_brake_notch"),
                         "must be at most " + std::to_string(notches) + ", what the vehicle of the group has",
-                        {"train"}});
+                        {OfGroup(i) + ".vehicle"}});
     }
+  }
+  for (std::size_t i = 0; i < train.consist.size(); ++i) {
+    if (!train.consist[i].trapped_cylinder_pressure_kpa || (brake && pressure_table.empty())) continue;
+    broken.push_back({OfGroup(i) + ".trapped_cylinder_pressure_kpa",
+                      "needs brake: a pressure_table has the pressures of all vehicles", kWhichBrake});
   }
   if (initial_reduction_kpa > 0.0) {
     if (!brake || !pressure_table.empty()) {
       broken.push_back(
-          {"initial_reduction_kpa", "needs brake: a pressure_table has its own start", {"pressure_table"}});
+          {"initial_reduction_kpa", "needs brake: a pressure_table has its own start", kWhichBrake});
     } else {
       for (const BrokenRule& rule : brake->BrokenRules(
                {{0.0, BrakeCommandKind::kApply, initial_reduction_kpa}}, train.VehicleCount())) {
@@ -240,8 +258,7 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
         {"driver.period_s", "must be a multiple of exchange_interval_s", {"exchange_interval_s"}});
   }
   if (!brake || !pressure_table.empty()) {
-    broken.push_back(
-        {"driver", "needs brake: a driver cannot drive with a pressure_table", {"pressure_table"}});
+    broken.push_back({"driver", "needs brake: a driver cannot drive with a pressure_table", kWhichBrake});
   } else {
     for (const bool is_first : {true, false}) {
       const double reduction_kpa = is_first ? driver->first_reduction_kpa : driver->largest_reduction_kpa;
@@ -249,8 +266,7 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
            brake->BrokenRules({{0.0, BrakeCommandKind::kApply, reduction_kpa}}, train.VehicleCount())) {
         if (rule.key.rfind("commands", 0) != 0) continue;
         broken.push_back({std::string("driver.") + (is_first ? "first" : "largest") + "_reduction_kpa",
-                          rule.text,
-                          {"brake"}});
+                          rule.text, rule.reads});
       }
     }
   }
@@ -263,14 +279,15 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
     const std::string key = "driver.stops" + ListIndex(i);
     if (!stop.position_m && std::find(stations.begin(), stations.end(), stop.station) == stations.end()) {
       broken.push_back(
-          {key + ".station", "must be a station of the track" + KnownNames(stations), {"track"}});
+          {key + ".station", "must be a station of the track" + KnownNames(stations), kStations});
       continue;
     }
     if (stops_m[i] <= last_m) {
+      std::vector<std::string> reads = kStations;
+      reads.insert(reads.end(), {"start_position_m", key, "driver.stops" + ListIndex(i == 0 ? i : i - 1)});
       broken.push_back(
-          {key,
-           "must lie ahead of the start and of the stop before, beyond " + ShortNumber(last_m) + " m",
-           {"start_position_m", "track"}});
+          {key, "must lie ahead of the start and of the stop before, beyond " + ShortNumber(last_m) + " m",
+           reads});
     }
     last_m = stops_m[i];
   }
@@ -304,7 +321,8 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
                         "must not lie under " + who + " on [" + ShortNumber(stretch.rear_m) + ", " +
                             ShortNumber(stretch.front_m) + "] m; the dip is on [" + ShortNumber(dip.from_m) +
                             ", " + ShortNumber(dip.from_m + dip.length_m) + "] m",
-                        {"train", "start_position_m", "model"}});
+                        {"track.dips" + ListIndex(i), "start_position_m", "model", kModels, kVehicleCounts,
+                         "train.consist[].vehicle.length_m"}});
       break;
     }
   }
@@ -313,21 +331,20 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
 void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     if (ModelOfGroup(i) != VehicleModel::kTwoD) continue;
-    const std::optional<TractionParams>& traction = train.consist[i].vehicle.traction;
-    if (traction && traction->slip_control && !Multiple(traction->slip_control->sampling_period_s, dt_s)) {
-      broken.push_back({"train.consist" + ListIndex(i) + ".vehicle.traction.slip_control.sampling_period_s",
-                        "must be a multiple of dt_s",
-                        {"train", "dt_s", "model"}});
-    }
-    const std::optional<SlideProtectionParams>& protection = train.consist[i].vehicle.wheel_slide_protection;
-    if (!protection) continue;
-    const std::string part = "train.consist" + ListIndex(i) + ".vehicle.wheel_slide_protection.";
+    const VehicleParams& vehicle = train.consist[i].vehicle;
     const auto must_be_multiple = [&](const std::string& key, double value) {
       if (value == 0.0 || Multiple(value, dt_s)) return;
-      broken.push_back({part + key, "must be a multiple of dt_s", {"train", "dt_s", "model"}});
+      broken.push_back({OfGroup(i) + ".vehicle." + key,
+                        "must be a multiple of dt_s",
+                        {"dt_s", "model", OfGroup(i) + ".model"}});
     };
-    must_be_multiple("sampling_period_s", protection->sampling_period_s);
-    must_be_multiple("valve.delay_s", protection->valve.delay_s);
+    if (vehicle.traction && vehicle.traction->slip_control)
+      must_be_multiple("traction.slip_control.sampling_period_s",
+                       vehicle.traction->slip_control->sampling_period_s);
+    if (!vehicle.wheel_slide_protection) continue;
+    const SlideProtectionParams& protection = *vehicle.wheel_slide_protection;
+    must_be_multiple("wheel_slide_protection.sampling_period_s", protection.sampling_period_s);
+    must_be_multiple("wheel_slide_protection.valve.delay_s", protection.valve.delay_s);
   }
 }
 
@@ -336,7 +353,12 @@ BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consi
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   const PressureGrid grid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()};
   const auto brake_with = [&](const std::vector<BrakeCommand>& commands) {
-    return BrakeSystem(*scenario.brake, commands, consist.centre_m, grid, length_m);
+    BrakeSystem made(*scenario.brake, commands, consist.centre_m, grid, length_m);
+    for (int i = 0; i < consist.vehicles(); ++i) {
+      const auto& trapped_kpa = scenario.train.consist[consist.vehicle_type[i]].trapped_cylinder_pressure_kpa;
+      if (trapped_kpa) made.TrapAir(i, *trapped_kpa * 1e3);
+    }
+    return made;
   };
   const std::vector<BrakeCommand> timed = TimedBrakeCommands(scenario.commands);
   const bool is_applied = scenario.initial_reduction_kpa > 0.0;

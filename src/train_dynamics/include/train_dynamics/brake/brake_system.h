@@ -83,6 +83,7 @@ class BrakeSystem {
   void PressuresAt(double time_s, std::vector<double>& pressure_pa) {
     std::visit([&](auto& system) { system.PressuresAt(time_s + ahead_s_, pressure_pa); }, system_);
     locomotives_.Act(time_s + ahead_s_, pressure_pa);
+    for (const Trapped& air : trapped_) pressure_pa[air.vehicle] = air.pressure_pa;
   }
   /// @throws std::invalid_argument if the system cannot obey
   void Command(BrakeCommand command) {
@@ -99,6 +100,11 @@ class BrakeSystem {
   void OpenPipe(double time_s, int connection) {
     std::visit([&](auto& system) { system.OpenPipe(time_s + ahead_s_, connection); }, system_);
   }
+  /// The valve of a vehicle is cut out with this pressure in its cylinder, for good.
+  void TrapAir(int vehicle, double pressure_pa) {
+    trapped_.push_back({vehicle, pressure_pa});
+    if (auto* machine = std::get_if<PneumaticBrake>(&system_)) machine->TrapAir(vehicle, pressure_pa);
+  }
   /// From now on a time means one that is so much later.
   void MoveAhead(double seconds) { ahead_s_ += seconds; }
 
@@ -111,7 +117,13 @@ class BrakeSystem {
   }
 
  private:
+  struct Trapped {
+    int vehicle;
+    double pressure_pa;
+  };
+
   System system_;
+  std::vector<Trapped> trapped_;
   LocomotiveBrakes locomotives_;
   double ahead_s_ = 0.0;
 };

@@ -81,7 +81,9 @@ struct DraftGearParams {
             "must equal static_friction_coefficient for friction damped_stick");
     v.Check(!damped_stick || gear_stick_stiffness_n_per_m > SteepestLoading(), "gear_stick_stiffness_n_per_m",
             "must exceed the steepest slope of the loading branch, " + ShortestDecimal(SteepestLoading()) +
-                " N/m");
+                " N/m",
+            {"friction", "preload_n", "preload_travel_m", "spring_stiffness_n_per_m",
+             "spring_hardening_n_per_m3", "travel_m", "wedge_angle_deg", "static_friction_coefficient"});
   }
 
   /// tan(phi) [-].

@@ -45,7 +45,7 @@ struct SideBuffersParams {
                 pretension_travel_m <= buffer.tables.loading.travel_m.back(),
             "pretension_travel_m", "must lie within the travel of the buffers", {"buffer"});
     v.Check(PretensionIsReached(), "draw_gear", "must reach the force of two buffers at pretension_travel_m",
-            {"buffer", "pretension_travel_m"});
+            {"buffer", "draw_gear", "pretension_travel_m"});
   }
 
  private:

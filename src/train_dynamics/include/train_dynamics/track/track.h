@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "train_dynamics/contact/polach.h"
+#include "train_dynamics/judgement.h"
 #include "train_dynamics/numeric/scalar.h"
 #include "train_dynamics/track/dip.h"
 #include "train_dynamics/track/friction_map.h"
@@ -49,7 +50,7 @@ struct TrackParams {
     v.Number("end_m", end_m, kFinite,
              "where the route ends to be known; default: the last of points, or without bound");
     v.Check(!begin_m || !end_m || *begin_m < *end_m, "end_m", "must be greater than begin_m", {"begin_m"});
-    for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, {rule.list});
+    Check(BrokenRules(), v);
   }
 
   // What the lists or the points give, whichever it is, by rising position.
@@ -61,12 +62,6 @@ struct TrackParams {
   Stretch Extent() const;  ///< where the route is known; infinite where nothing says so
 
  private:
-  /// A rule between the entries of a list that does not hold, as Check takes it.
-  struct BrokenRule {
-    std::string key, text;
-    const char* list;
-  };
-
   std::vector<BrokenRule> BrokenRules() const;
   void JudgeOrder(std::vector<BrokenRule>& broken) const;
   void JudgeHeights(std::vector<BrokenRule>& broken) const;

@@ -35,6 +35,7 @@ struct ConsistGroupParams {
   std::string external;
   std::string name;
   std::optional<SlackState> initial_slack = std::nullopt;
+  std::optional<double> trapped_cylinder_pressure_kpa = std::nullopt;
   double initial_throttle_notch = 0.0, initial_dynamic_brake_notch = 0.0;
   bool locomotive = false;
 
@@ -44,7 +45,7 @@ struct ConsistGroupParams {
     v.Number("load_fraction", vehicle.load_fraction, kFraction,
              "how much of its load each vehicle of the group carries, in place of the vehicle's own");
     v.Check(vehicle.load || !vehicle.load_fraction, "load_fraction",
-            "needs a vehicle with load: what it carries when it is full", {"vehicle"});
+            "needs a vehicle with load: what it carries when it is full", {"vehicle.load"});
     v.Choice("model", model, kVehicleModels,
              "model of the group's vehicles; not given: that of the scenario");
     v.Text("external", external,
@@ -63,6 +64,13 @@ struct ConsistGroupParams {
              "where the slack of the connections in front of the group's vehicles is at time 0; not given: "
              "that of "
              "the scenario");
+    v.Number(
+        "trapped_cylinder_pressure_kpa", trapped_cylinder_pressure_kpa, Range{0.0, 1000.0, false, false},
+        "air that stays in the brake cylinders of the group for the whole run, whatever the driver does: the "
+        "control valves are cut out, as of wagons left standing with brakes applied or of a brake that "
+        "sticks; 0: they were bled; not given: the brake works");
+    v.Check(!trapped_cylinder_pressure_kpa || !vehicle.brake_rigging.cut_out, "trapped_cylinder_pressure_kpa",
+            "has no effect in a vehicle with brake_rigging.cut_out", {"vehicle.brake_rigging.cut_out"});
     v.Number("initial_throttle_notch", initial_throttle_notch, Range{0.0, 100.0, false, false},
              "that locomotives of the group obey at time 0, with the steady effort of their speed");
     v.Number("initial_dynamic_brake_notch", initial_dynamic_brake_notch, Range{0.0, 100.0, false, false},

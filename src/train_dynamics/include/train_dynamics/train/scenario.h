@@ -89,8 +89,9 @@ struct ScenarioParams {
     v.Check(Multiple(duration_s, record_interval_s), "duration_s", "must be a multiple of record_interval_s",
             {"record_interval_s"});
     v.Check(integrator == LtdIntegrator::kLeapfrog || !Uses(VehicleModel::kTwoD), "integrator",
-            "must be leapfrog for the 2d model: explicit creep forces are unstable", {"model", "train"});
-    for (const BrokenRule& rule : BrokenRules()) v.Check(false, rule.key, rule.text, rule.reads);
+            "must be leapfrog for the 2d model: explicit creep forces are unstable",
+            {"model", "train.consist[].model"});
+    train_dynamics::Check(BrokenRules(), v);
   }
 
   int StepsPerExchange() const;

@@ -86,12 +86,12 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
                                    : "has no place in a train of one vehicle";
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (outside(sources[i].vehicle))
-      broken.push_back({"brake." + at("sources", i) + ".vehicle", VehicleRule(n), {"train"}});
+      broken.push_back({"brake." + at("sources", i) + ".vehicle", VehicleRule(n), {kVehicleCounts}});
     for (std::size_t k = 1; k < sources[i].commands.size(); ++k) {
       if (sources[i].commands[k].time_s < sources[i].commands[k - 1].time_s)
         broken.push_back({"brake." + at("sources", i) + "." + at("commands", k) + ".time_s",
                           "must be at least that of the command before",
-                          {}});
+                          {"brake." + at("sources", i) + "." + at("commands", k - 1) + ".time_s"}});
     }
   }
   std::set<std::string> names;
@@ -99,7 +99,7 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
     if (!names.insert(valves[i].name).second)
       broken.push_back({"brake." + at("valves", i) + ".name",
                         "must be another one for each valve, \"" + valves[i].name + "\" is given twice",
-                        {}});
+                        {"brake.valves[].name"}});
   }
   std::vector<int> said_by(n, -1);
   bool good = true;
@@ -107,15 +107,16 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
     const BrakeEquipmentParams& e = equipment[i];
     const std::string key = "brake." + at("equipment", i);
     if (!e.valve.empty() && names.count(e.valve) == 0) {
-      broken.push_back(
-          {key + ".valve", "must be the name of one of brake.valves, there is no \"" + e.valve + "\"", {}});
+      broken.push_back({key + ".valve",
+                        "must be the name of one of brake.valves, there is no \"" + e.valve + "\"",
+                        {"brake.valves[].name"}});
       good = false;
     }
     const int from = VehicleIndex(e.from, n), to = VehicleIndex(e.to, n);
-    if (from < 0) broken.push_back({key + ".from", VehicleRule(n), {"train"}});
-    if (to < 0) broken.push_back({key + ".to", VehicleRule(n), {"train"}});
+    if (from < 0) broken.push_back({key + ".from", VehicleRule(n), {kVehicleCounts}});
+    if (to < 0) broken.push_back({key + ".to", VehicleRule(n), {kVehicleCounts}});
     if (from >= 0 && to >= 0 && from > to)
-      broken.push_back({key + ".to", "must not be in front of from", {}});
+      broken.push_back({key + ".to", "must not be in front of from", {key + ".from"}});
     if (from < 0 || to < 0 || from > to) {
       good = false;
       continue;
@@ -125,7 +126,7 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
         broken.push_back({key + ".from",
                           "must leave each vehicle to one entry: vehicle " + std::to_string(v + 1) +
                               " is in brake." + at("equipment", said_by[v]) + ", too",
-                          {}});
+                          {"brake.equipment[].from", "brake.equipment[].to"}});
         break;
       }
       said_by[v] = static_cast<int>(i);
@@ -133,10 +134,10 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
   }
   for (std::size_t i = 0; i < closed_angle_cocks.size(); ++i)
     if (closed_angle_cocks[i] >= n)
-      broken.push_back({"brake." + at("closed_angle_cocks", i), behind, {"train"}});
+      broken.push_back({"brake." + at("closed_angle_cocks", i), behind, {kVehicleCounts}});
   for (std::size_t i = 0; i < parted_hoses.size(); ++i)
     if (parted_hoses[i].behind_vehicle >= n)
-      broken.push_back({"brake." + at("parted_hoses", i) + ".behind_vehicle", behind, {"train"}});
+      broken.push_back({"brake." + at("parted_hoses", i) + ".behind_vehicle", behind, {kVehicleCounts}});
   bool direct = false;
   if (good)
     for (int valve : ValveOfVehicle(n))
@@ -153,14 +154,14 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
       broken.push_back(
           {key,
            "must be at most brake.charged_pressure_kpa, " + ShortestDecimal(charged_pressure_kpa),
-           {"brake"}});
+           {"brake.charged_pressure_kpa"}});
     if (direct && wanted < reduction)
       broken.push_back(
           {key,
            "must not be below that of the application before, " + ShortestDecimal(reduction) +
                ": valves of direct release cannot let the brake down by steps; release first, or give the "
                "vehicles valves of kind graduated_release",
-           {"brake"}});
+           {"brake.valves", "brake.equipment", "commands[].kind", "commands[].reduction_kpa"}});
     reduction = wanted;
   }
   return broken;
@@ -274,6 +275,13 @@ PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
   }
   acting_pa_.assign(vehicles, 0.0);
   acting_before_pa_.assign(vehicles, 0.0);
+}
+
+void PneumaticBrake::TrapAir(int vehicle, double pressure_pa) {
+  cut_out_[vehicle] = 1;
+  pressure_share_[vehicle] = 1.0;
+  states_[vehicle] = valves_[valve_of_[vehicle]].Empty();
+  states_[vehicle].cylinder_pa = kAtmospherePa + pressure_pa;
 }
 
 void PneumaticBrake::Send(SourceState& source, double now_s, double delay_s,

@@ -295,6 +295,8 @@ class PneumaticBrake {
   void Command(const BrakeCommand& command);
   /// The hose parts between vehicles `connection` and `connection` + 1, from 0. Again: nothing.
   void OpenPipe(double time_s, int connection);
+  /// The valve of a vehicle is cut out, before the first step, with this pressure in its cylinder and none elsewhere.
+  void TrapAir(int vehicle, double pressure_pa);
   /// From one time to another the valve of a vehicle is held where it empties its cylinder; see ControlValve::BailOff.
   void BailOff(int vehicle, double from_s, double to_s) { bail_offs_.push_back({vehicle, from_s, to_s}); }
 
