@@ -587,6 +587,12 @@ class ReportTest(unittest.TestCase):
 
     # Slides, the dip, a vehicle
 
+    def test_no_pressures_are_drawn_where_no_brake_was_applied(self):
+        page = self.page(simulated("impact", "impact"))
+        self.assertIn("largest_coupler_forces", page.figures)
+        self.assertFalse({"pressures", "pressure_picture"} & set(page.figures))
+        self.assertEqual("No brake was applied.", page.left_out["Cylinder pressure, whole train"])
+
     def test_air_brake(self):
         parted = simulated("parted", "hose_parted", "--set", "duration_s=14")
         page = self.page(parted)

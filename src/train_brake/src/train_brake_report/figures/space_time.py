@@ -230,6 +230,9 @@ def draw_pipe(group: Group) -> Figure:
 
 
 def draw_pressure(group: Group) -> Figure:
+    series, _ = _series(PRESSURE, group)
+    if not any(values.any() for _, values in series.values()):
+        raise LeftOut("No brake was applied.")
     return _draw(PRESSURE, group)
 
 
