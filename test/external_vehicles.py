@@ -153,7 +153,7 @@ class ExternalVehicles(LaunchTest):
             stderr=subprocess.STDOUT,
             text=True,
         )
-        self.assertTrue(wait_until(lambda: (self.folder / "broken").exists(), 30))
+        self.assertTrue(wait_until(lambda: (self.folder / "broken").exists(), 120))
         self.tool("rostopic", "echo", "-n20", "/train/live/status")
         subprocess.run(["kill", "-9", str(self.master.process_of("mine"))], check=True)
         node.wait(10)

@@ -59,7 +59,7 @@ class LockstepDriver(LaunchTest):
 
     def run_train(self, name, duration_s, *arguments, code=0, **options):
         launch = self.launch(name, duration_s, *arguments, **options)
-        self.assertEqual(code, launch.ended(120), launch.log())
+        self.assertEqual(code, launch.ended(300), launch.log())
         return launch
 
     def given(self, launch):
@@ -191,7 +191,7 @@ class LockstepDriver(LaunchTest):
         launch = self.run_train("none", 2, "startup_timeout:=1", code=4)
         self.assertRegex(launch.log(), "the driver /train/driver is missing after .*drive is not advertised")
         stray = self.driver("rosrun", "train_brake_examples", "hold_speed", "_speed_kmh:=30", namespace="/other")
-        self.assertTrue(wait_until(lambda: "/other/driver/drive" in self.master.services(), 30))
+        self.assertTrue(wait_until(lambda: "/other/driver/drive" in self.master.services(), 120))
         launch = self.run_train("elsewhere", 2, "startup_timeout:=1", code=4)
         self.assertIn("but /other/driver/drive is: for that driver say driver:=/other/driver", launch.log())
         self.run_train("there", 2, "driver:=/other/driver")
