@@ -12,7 +12,7 @@ case "${ROS_DISTRO:-Debian}" in
   *)
     # A ROS of another origin is in use (its setup file was sourced): Debian's ROS packages would clash with it.
     echo "ROS $ROS_DISTRO is in use, so no package is installed. If the build misses one:"
-    echo "  rosdep install --from-paths src --ignore-src"
+    echo "  rosdep install --from-paths src --ignore-src   (tools/rosdep.yaml adds a key that rosdistro lacks)"
     exit 0 ;;
 esac
 
