@@ -106,6 +106,11 @@ class Load(unittest.TestCase):
             self.assertEqual(whole.config, run.config)
             self.assertEqual((None, None), (run.summary, run.couplers))
 
+    def test_a_table_shows_what_it_holds(self):
+        shown = repr(train_brake.load(six_wagons())["state"])
+        for word in ("records from 0 to ", "speed_mps[6] m/s", "position_m[6] m", "exchange,"):
+            self.assertIn(word, shown)
+
     def test_to_pandas(self):
         frame = train_brake.load(six_wagons()).to_pandas("state")
         state = train_brake.load(six_wagons())["state"]

@@ -94,6 +94,14 @@ class Table:
     def __len__(self) -> int:
         return len(self.time_s)
 
+    def __repr__(self) -> str:
+        columns = [
+            name + "".join(f"[{size}]" for size in column.shape[1:]) + (f" {unit_of(name)}" if unit_of(name) else "")
+            for name, column in self._columns.items()
+        ]
+        span = f" from {self.time_s[0]:g} to {self.time_s[-1]:g} s" if len(self) else ""
+        return f"<train_brake.Table of {len(self)} records{span}: {', '.join(columns)}>"
+
     def __getitem__(self, field: str) -> numpy.ndarray:
         try:
             return self._columns[field]
