@@ -57,7 +57,7 @@ class WagonServices(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scenario = resolved_scenario()
-        rospy.wait_for_service(NODE + "/step", 20)
+        rospy.wait_for_service(NODE + "/step", 600)
         cls.configure = rospy.ServiceProxy(NODE + "/configure", Configure, persistent=True)
         cls.step = rospy.ServiceProxy(NODE + "/step", Step, persistent=True)
 
@@ -310,7 +310,7 @@ class WagonServices(unittest.TestCase):
             time.sleep(3)  # three times its patience, without any request
             self.assertIsNone(wagon.poll())
             core.send_signal(signal.SIGKILL)
-            wagon.wait(10)
+            wagon.wait(600)
         finally:
             core.kill()
             core.wait()

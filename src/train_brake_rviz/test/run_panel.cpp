@@ -41,7 +41,7 @@ class RunPanelTest : public testing::Test {
   }
 
   /// Lets messages and events come until the condition holds.
-  bool Comes(const std::function<bool()>& condition, double timeout_s = 20.0) {
+  bool Comes(const std::function<bool()>& condition, double timeout_s = 600.0) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(timeout_s);
     while (!condition()) {
       if (ros::WallTime::now() > end) return false;

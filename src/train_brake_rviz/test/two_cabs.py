@@ -25,7 +25,7 @@ WORKSPACE = pathlib.Path(__file__).resolve().parents[3]
 SCENARIO = WORKSPACE / "config" / "scenarios" / "drive_and_stop.yaml"
 TRAINS = {"/train": ("plain", 30), "/north/train": ("north", 15)}  # namespace: (folder, speed to be held [km/h])
 EMERGENCY_BUTTON = ((250, 165, 100), (220, 115, 40))  # colours between which its own lie, once a train runs
-LATE = 120.0
+LATE = 600.0  # a loaded machine draws two trains slowly
 
 
 def wait_until(condition, timeout_s=LATE):
@@ -163,11 +163,11 @@ class TwoCabs(unittest.TestCase):
         # The run of each ends when its rviz is closed, and the other one goes on.
         rviz = [n for n in self.nodes(1, "/north/train/live/driver_view") if "rviz" in n]
         subprocess.run(["rosnode", "kill", *rviz], check=True, stdout=subprocess.DEVNULL)
-        trains["/north/train"].wait(60)
+        trains["/north/train"].wait(LATE)
         self.assertIsNone(trains["/train"].poll())
         rviz = [n for n in self.nodes(1, "/train/live/driver_view") if "rviz" in n]
         subprocess.run(["rosnode", "kill", *rviz], check=True, stdout=subprocess.DEVNULL)
-        trains["/train"].wait(60)
+        trains["/train"].wait(LATE)
         commands = {
             namespace: json.loads((self.folder / name / "summary.json").read_text())["commands"]
             for namespace, (name, _) in TRAINS.items()

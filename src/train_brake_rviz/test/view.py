@@ -16,9 +16,10 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 SHORT_TRAIN = pathlib.Path(__file__).resolve().parents[3] / "test" / "short_train.yaml"  # six wagons
 DURATION = 1.0
+LATE = 600.0  # what waits may take on a loaded machine
 
 
-def wait_until(condition, timeout_s=30):
+def wait_until(condition, timeout_s=LATE):
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
         if condition():
@@ -76,7 +77,7 @@ class View(unittest.TestCase):
 
     def start(self, *command):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(process.wait, 20)
+        self.addCleanup(process.wait, LATE)
         self.addCleanup(process.terminate)
         return process
 
@@ -159,7 +160,7 @@ class View(unittest.TestCase):
         ):
             done = subprocess.run(
                 ["rosrun", "train_brake_rviz", "train_view", "__ns:=/wrong", parameter],
-                timeout=20,
+                timeout=LATE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
