@@ -31,10 +31,10 @@ fuzz     = $(catkin_make) --build build_fuzz -DCATKIN_DEVEL_PREFIX=$(CURDIR)/dev
 # What of a build's output is worth reading: the steps and the complaints.
 quietly = 2>&1 | sed -uE '/^((Base path|Source space|Build space|Devel space|Install space|Creating symlink|\#\#\#\#|-- |Consolidate compiler)|.*\] Built target )/d'
 
-# All tests of the build folder $(1), each in $(2) seconds (600), or those named $(3); the output of failed ones, and
+# All tests of the build folder $(1), each in $(2) seconds at most (1800; it only ends what hangs), or those named $(3); the output of failed ones, and
 # "N passed, N failed". /usr/bin comes first, because tools of ROS start "python3".
 run_tests = rm -rf $(1)/test_results $(1)/Testing; \
-  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),600) --output-on-failure $(if $(3),-R '$(3)')); \
+  (cd $(1) && PATH=/usr/bin:$$PATH ctest -j$(JOBS) --timeout $(or $(2),1800) --output-on-failure $(if $(3),-R '$(3)')); \
   tools/test_summary.py $(1)
 
 sources = find src -name '*.h' -o -name '*.cpp'

@@ -19,6 +19,9 @@ import rosgraph
 SHORT_TRAIN = pathlib.Path(__file__).resolve().parent / "short_train.yaml"  # six wagons
 
 
+LATE = 600.0  # what waits may take on a loaded machine
+
+
 def wait_until(condition, timeout_s):
     end = time.monotonic() + timeout_s
     while not condition():
@@ -47,7 +50,7 @@ class RosMaster:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        assert wait_until(lambda: rosgraph.is_master_online(self.uri), 30), "no ROS master"
+        assert wait_until(lambda: rosgraph.is_master_online(self.uri), LATE), "no ROS master"
 
     def services(self):
         with contextlib.suppress(OSError, rosgraph.MasterException):
@@ -72,7 +75,7 @@ class RosMaster:
         found.pop(self.process.pid, None)
         return found
 
-    def process_of(self, node, timeout_s=30):
+    def process_of(self, node, timeout_s=LATE):
         """The process of a node, which is waited for."""
         found = []
 
@@ -134,7 +137,7 @@ class Launch:
         self.process.send_signal(signal.SIGINT)
         return time.monotonic()
 
-    def ended(self, timeout_s=60):
+    def ended(self, timeout_s=LATE):
         """Waits for its end. @return the exit code of the train's master; None: it has left none"""
         self.process.wait(timeout_s)
         return int(self.status_file.read_text()) if self.status_file.exists() else None
@@ -161,7 +164,7 @@ class LaunchTest(unittest.TestCase):
             subprocess.run(["kill", "-9", str(process)], stderr=subprocess.DEVNULL, check=False)
         self.master.kill()
 
-    def tool(self, *command, timeout_s=120):
+    def tool(self, *command, timeout_s=LATE):
         """The output of a command, to its end."""
         done = subprocess.run(
             command,
@@ -192,7 +195,7 @@ def is_beginning(bag, whole):
 def train_sim(*arguments, scenario=SHORT_TRAIN):
     """A train in one process. @return its summary"""
     done = subprocess.run(
-        ["rosrun", "train_sim", "train_sim", "run", *([str(scenario)] if scenario else []), *arguments],
+        ["rosrun", "train_sim", "train_sim", "run", "--json", *([str(scenario)] if scenario else []), *arguments],
         check=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

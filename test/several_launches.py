@@ -331,6 +331,16 @@ class SeveralLaunches(LaunchTest):
         branch = self.run_command("runs/two", "resume:=runs/one", "set:=duration_s=0.12", folder=caller)
         self.assertEqual(0, branch[0], branch[1])
 
+    def test_vehicles_0_is_any_train_in_the_master(self):
+        launch = self.launch("all", "vehicles:=0", "set:=duration_s=0.2")
+        self.assertEqual(0, launch.ended(), launch.log())
+        summary = json.loads((launch.out / "summary.json").read_text())
+        self.assertEqual(train_sim("--set", "duration_s=0.2")["state_digest"], summary["state_digest"])
+        self.assertIn(
+            "all 6 vehicles are in the master, on one core; vehicles:=6 puts them on wagon nodes", launch.log()
+        )
+        self.assertIn(f"6 vehicles, 2d model, ends after 0.2 s and {summary['distance_m']:.1f} m", launch.log())
+
     def test_run_returns_2_for_what_it_cannot_use(self):
         for words, told in (
             (["absent.yaml"], "does not exist"),

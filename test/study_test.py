@@ -248,7 +248,7 @@ class Sweep(InAFolder):
                 "parallel",
                 "--will-cite",
                 "-j2",
-                "train_sim run study/runs/{}/config.yaml --threads 1 > study/runs/{}/summary.json",
+                "train_sim run study/runs/{}/config.yaml --json --threads 1 > study/runs/{}/summary.json",
                 "::::",
                 "study/jobs.txt",
             ],

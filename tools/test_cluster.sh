@@ -81,7 +81,7 @@ digest_in() {
 export HOME=$work/home ROS_IP=$net.1 ROS_MASTER_URI=http://$net.1:11311
 scenario=$workspace/config/scenarios/emergency.yaml
 change="duration_s=1"
-expected=$(rosrun train_sim train_sim run "$scenario" --set $change | digest_in /dev/stdin)
+expected=$(rosrun train_sim train_sim run "$scenario" --json --set $change | digest_in /dev/stdin)
 
 # Where the wagon nodes really are, while they run.
 watch_placement() {
@@ -126,7 +126,7 @@ study here && study far --plan-only && mkdir -p "$work/remote" || failed
 (cd "$work" && parallel --will-cite --ssh "ssh -i $work/home/.ssh/id_rsa -o UserKnownHostsFile=$work/home/.ssh/known_hosts" \
   --sshlogin "1/root@${addresses[0]},1/root@${addresses[1]}" --workdir "$work/remote" --joblog "$work/joblog" \
   --transferfile far/runs/{}/config.yaml --return far/runs/{}/summary.json --cleanup \
-  ". $workspace/devel/setup.bash; train_sim run far/runs/{}/config.yaml --threads 1 > far/runs/{}/summary.json" :::: far/jobs.txt) \
+  ". $workspace/devel/setup.bash; train_sim run far/runs/{}/config.yaml --json --threads 1 > far/runs/{}/summary.json" :::: far/jobs.txt) \
   >"$work/parallel.log" 2>&1 || failed
 rosrun train_brake sweep "$work/far" --collect >/dev/null || failed
 cmp "$work/here/results.csv" "$work/far/results.csv" || failed
@@ -137,7 +137,7 @@ echo "study: 6 runs over $hosts machines, the table of one machine"
 # Two runs that lose a machine: first its link, for a while (a node that has replied before is not even missed); then
 # the machine itself, for good, and its two nodes are started by hand on another one.
 change="duration_s=8"
-expected=$(rosrun train_sim train_sim run "$scenario" --set $change | digest_in /dev/stdin)
+expected=$(rosrun train_sim train_sim run "$scenario" --json --set $change | digest_in /dev/stdin)
 
 lose_link() {
   ip link set ${name}v2 down

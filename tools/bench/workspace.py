@@ -58,6 +58,7 @@ def _train_sim(arguments, settings):
     return [
         program("train_sim", "train_sim"),
         "run",
+        "--json",
         EMERGENCY,
         *arguments,
         *(word for setting in settings for word in ("--set", setting)),

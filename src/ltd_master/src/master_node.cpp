@@ -18,6 +18,7 @@
 #include "train_dynamics/train/ranks.h"
 #include "train_node/caller.h"
 #include "train_node/running_node.h"
+#include "train_results/summary_text.h"
 #include "train_run/exit_code.h"
 #include "train_run/interrupt.h"
 
@@ -182,14 +183,19 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
 
 /// What the user has given and this run does not use, and where its results go.
 void MasterNode::TellWhatIsNotUsed() const {
+  const bool is_2d = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
+  if (is_2d && options_.vehicles == 0 && options_.ranks == 0) {
+    const int vehicles = scenario_.consist.vehicles();
+    ROS_WARN("all %d vehicles are in the master, on one core; vehicles:=%d puts them on wagon nodes",
+             vehicles, vehicles);
+  }
   if (!options_.nodes.empty() && options_.nodes != "auto" &&
       options_.nodes != std::to_string(options_.ranks)) {
     ROS_WARN("nodes:=%s is not used: %s", Presentable(options_.nodes).c_str(),
-             scenario_.params.model == train_dynamics::VehicleModel::kTwoD
-                 ? fmt::format("the train has {} vehicles and runs on {} wagon nodes",
-                               scenario_.consist.vehicles(), options_.ranks)
-                       .c_str()
-                 : "trains of the LTD models run in the master alone");
+             is_2d ? fmt::format("the train has {} vehicles and runs on {} wagon nodes",
+                                 scenario_.consist.vehicles(), options_.ranks)
+                         .c_str()
+                   : "trains of the LTD models run in the master alone");
   }
   const LockstepDriverOptions& driver = options_.driver;
   const LockstepDriverOptions defaults;
@@ -301,7 +307,8 @@ int MasterNode::Run() {
   if (exit_code == train_run::kFailure) fault = "the results could not be written: " + run.write_error();
   PublishDiagnostics(master, exit_code == train_run::kSuccess ? "complete" : "ended early");
   ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
-  train_console::Print("{}", json);
+  train_console::Print("{}", train_results::SummaryText(json));
+  if (exit_code == train_run::kFailure) train_console::Print("{}", json);  // it may be nowhere else
   train_console::FinishOutput();  // for people: the result is summary.json
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -35,6 +36,19 @@ void Break(int descriptor) {
   if (pipe(ends) != 0) _exit(100);
   close(ends[0]);
   dup2(ends[1], descriptor);
+}
+
+TEST(ConsoleTest, AShellTakesAWordAsItIs) {
+  for (const std::string word :
+       {"results/stop", "two words", "", "it's", "'", "$HOME `id` \\ \"x\" *", "~", "a\nb", "-x;y"}) {
+    FILE* shell = popen(("printf %s " + ShellWord(word)).c_str(), "r");
+    ASSERT_NE(nullptr, shell);
+    std::string told;
+    for (int character = 0; (character = fgetc(shell)) != EOF;) told += static_cast<char>(character);
+    EXPECT_EQ(0, pclose(shell)) << word;
+    EXPECT_EQ(word, told);
+  }
+  EXPECT_EQ("results/stop-1_a.yaml", ShellWord("results/stop-1_a.yaml"));  // as a person would write it
 }
 
 TEST(ConsoleTest, MessageToAFullDeviceIsLost) {

@@ -189,6 +189,7 @@ const std::vector<ResultColumn>& SummaryFields() {
       {"commands[].command", "", "the command, as text"},
       {"commands[].live", "", "true: given to the running train"},
       {"fault", "", "why the run failed; null: it did not"},
+      {"distance_m", "m", "mean distance run from time 0 to the end"},
       {"final_speed_kmh.mean", "km/h", "mean speed of the vehicles at the end"},
       {"final_speed_kmh.lead", "km/h", "of the first vehicle"},
       {"final_speed_kmh.tail", "km/h", "of the last vehicle"},

@@ -167,6 +167,7 @@ std::string SummaryJson(const RunSummary& summary, const TrainMaster& master, do
   json["ended_by"] = master.Done() ? Json(master.EndedByUntil() ? "until" : "duration_s") : Json();
   json["commands"] = Commands(summary, master);
   json["fault"] = fault.empty() ? Json() : Json(fault);
+  json["distance_m"] = Number(summary.mean_distance_m());
   json["final_speed_kmh"] = {{"mean", Number(kKmhPerMps * summary.mean_speed_mps())},
                              {"lead", Number(kKmhPerMps * summary.lead_speed_mps())},
                              {"tail", Number(kKmhPerMps * summary.tail_speed_mps())}};

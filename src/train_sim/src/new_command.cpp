@@ -23,7 +23,7 @@ constexpr Template kTemplates[] = {
     {"README.md", nullptr,
      R"(`train_sim check scenarios/stop.yaml` tells what the scenario is and whether it can run.
 `train_sim run scenarios/stop.yaml --out results/stop` runs it; `rosrun train_brake report results/stop` draws it.
-`roslaunch launch/stop.launch` runs it as a ROS graph (its argument `vehicles` is the number of vehicles of the train).
+`rosrun train_brake run scenarios/stop.yaml results/graph` runs it as a ROS graph; `roslaunch launch/stop.launch` does in a graph of yours.
 The train is `trains/mine.yaml`, the route `tracks/mine.csv`; `train_sim route tracks/mine.csv` tells what the route is.
 `train_sim keys` prints all keys that these files can have; shipped parts are used by name, as `vehicle: tank`.
 )"},
@@ -66,7 +66,7 @@ position_m,station,grade_permille,radius_m,speed_limit_kmh
      R"(<launch>
   <!-- Runs ../scenarios/stop.yaml. These and all other arguments of train.launch can be given. -->
   <arg name="model" default="ltd" doc="2d, ltd or ltd-no-inertia"/>
-  <arg name="vehicles" default="19" doc="vehicles of the train; the master checks it"/>
+  <arg name="vehicles" default="0" doc="vehicles of the train; 0 = all in the master, without wagon nodes"/>
   <arg name="out" default=" " doc="folder for train.bag, config.yaml and summary.json"/>
   <include file="$(find train_brake)/launch/train.launch" pass_all_args="true">
     <arg name="scenario" value="$(dirname)/../scenarios/stop.yaml"/>
@@ -112,8 +112,9 @@ int StartFolder(const std::string& name) {
   for (const Template& file : kTemplates) WriteFile(folder / file.file, Modeline(file.schema) + file.text);
   train_console::Print("{} has a train, a route, a scenario and a launch file:\n", name);
   for (const Template& file : kTemplates) train_console::Print("  {}\n", (folder / file.file).string());
-  train_console::Print("next: train_sim run {} --out {}\n", (folder / "scenarios/stop.yaml").string(),
-                       (folder / "results/stop").string());
+  train_console::Print("next: train_sim run {} --out {}\n",
+                       train_console::ShellWord((folder / "scenarios/stop.yaml").string()),
+                       train_console::ShellWord((folder / "results/stop").string()));
   if (train_dynamics::config::PartFolders().empty()) {
     train_console::Tell(
         "train_sim: its parts are shipped ones, which are not found now: source setup.bash of the workspace, "

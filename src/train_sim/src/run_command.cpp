@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,8 +13,10 @@
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/in_process_train.h"
 #include "train_dynamics/train/thread_team.h"
+#include "train_results/plain_file.h"
 #include "train_results/resume.h"
 #include "train_results/run_output.h"
+#include "train_results/summary_text.h"
 #include "train_run/interrupt.h"
 #include "train_run/progress.h"
 #include "train_run/train_run.h"
@@ -77,6 +81,16 @@ void WarnOfResidual(const train_run::TrainRun& run) {
       share, kAim);
 }
 
+/// For people: what to do next.
+void TellWhereResultsAre(const RunOptions& options) {
+  const std::string folder = train_console::ShellWord(options.out.empty() ? options.resume : options.out);
+  if (options.out.empty() && options.resume.empty()) {
+    train_console::Print("  nothing was written: --out FOLDER keeps the results\n");
+  } else {
+    train_console::Print("  results: {}   figures: rosrun train_brake report {}\n", folder, folder);
+  }
+}
+
 /// From time 0, or from a checkpoint, to the end.
 int Run(const LoadedScenario& scenario, const RunOptions& options,
         const train_dynamics::TrainCheckpoint* checkpoint, train_results::RunOutput& output) {
@@ -96,7 +110,13 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   }
   WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
-  train_console::Print("{}", json);
+  if (options.json) {
+    train_console::Print("{}", json);
+  } else {
+    train_console::Print("{}", train_results::SummaryText(json));
+    TellWhereResultsAre(options);
+    if (run.exit_code() == train_run::kFailure) train_console::Print("{}", json);  // it may be nowhere else
+  }
   Print(run.Warnings());
   const double end_s = run.master().time_s();
   switch (run.exit_code()) {
@@ -118,6 +138,17 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
 }
 
 }  // namespace
+
+int TellSummary(const std::string& folder) {
+  constexpr std::size_t kLargest = std::size_t{1} << 26U;
+  const std::filesystem::path file = std::filesystem::path(folder) / "summary.json";
+  try {
+    train_console::Print("{}", train_results::SummaryText(train_results::ReadPlainFile(file, kLargest)));
+  } catch (const train_results::NoSummary& e) {
+    throw std::invalid_argument(file.string() + " is not the summary of a run: " + e.what());
+  }
+  return train_run::kSuccess;
+}
 
 int RunScenario(const RunOptions& options) {
   train_run::CatchInterrupts();  // before there are files that only an orderly end completes

@@ -37,6 +37,7 @@ constexpr const char* kDescription =
     "  train_sim check my_scenario.yaml\n"
     "  train_sim keys vehicle.brake_rigging\n"
     "  train_sim route my_line.csv --plot my_line.svg\n"
+    "  train_sim summary results/emergency\n"
     "  train_sim verify results/emergency\n"
     "  train_sim air-test config/scenarios/full_service_ab.yaml\n"
     "  train_sim brake-weight config/scenarios/mixed_g_p.yaml --set brake=uic_p\n"
@@ -129,7 +130,7 @@ int Main(int argc, char** argv) {
   app.set_version_flag("--version", "train_sim " TRAIN_BRAKE_VERSION);
   app.require_subcommand(1);
 
-  CLI::App* run = app.add_subcommand("run", "simulate a scenario; the summary goes to the standard output");
+  CLI::App* run = app.add_subcommand("run", "simulate a scenario, and tell what it came to");
   AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
   run->add_option(
          "--resume", options.resume,
@@ -152,6 +153,8 @@ int Main(int argc, char** argv) {
       ->check(Count(1, 1024));
   run->add_flag("--csv", options.csv,
                 "write tables into the folder, too: couplers, vehicles, history, pressures, wagons");
+  run->add_flag("--json", options.json,
+                "print the contents of summary.json, for programs, in place of the lines for people");
   run->add_flag("--twin", options.twin,
                 "run the train once more with its start speed changed by 1e-9 km/h: the summary tells to how "
                 "many newtons "
@@ -219,6 +222,10 @@ int Main(int argc, char** argv) {
   show_route->callback([&] { command = [&] { return train_sim::ShowRoute(route); }; });
 
   train_sim::VerifyOptions recording;
+  CLI::App* summary = app.add_subcommand("summary", "tell again what a run came to");
+  summary->add_option("DIR", folder, "folder of the run")->check(kPath)->required();
+  summary->callback([&] { command = [&] { return train_sim::TellSummary(folder); }; });
+
   CLI::App* verify = app.add_subcommand("verify", "repeat a recorded run and compare it bit by bit");
   verify->add_option("DIR_OR_BAG", recording.recording, "folder of a run, or bag, also of rosbag record")
       ->check(kPath)

@@ -36,6 +36,7 @@ def digest(row):
     command = [
         TRAIN_SIM,
         "run",
+        "--json",
         str(CONFIG / "scenarios" / f"{row['scenario']}.yaml"),
         "--set",
         "duration_s=" + row["duration_s"],

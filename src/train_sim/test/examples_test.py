@@ -66,7 +66,7 @@ class OwnFiles(unittest.TestCase):
         return path
 
     def run_ok(self, scenario, *arguments):
-        done = train_sim("run", scenario, *arguments)
+        done = train_sim("run", "--json", scenario, *arguments)
         self.assertEqual(0, done.returncode, done.stderr)
         return json.loads(done.stdout), done.stderr
 
@@ -197,6 +197,7 @@ class Examples(unittest.TestCase):
                 checked = yaml.safe_load(scenario.read_text())
                 done = train_sim(
                     "run",
+                    "--json",
                     scenario,
                     "--model",
                     "ltd",

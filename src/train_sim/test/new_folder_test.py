@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import xml.etree.ElementTree as ElementTree
 
 import rosunit
 
@@ -58,12 +57,17 @@ class NewFolder(unittest.TestCase):
         route = train_sim("route", self.folder / "tracks" / "mine.csv", cwd=self.elsewhere.name)
         self.assertEqual(route.returncode, 0, route.stderr)
 
-    def test_launch_file_says_how_many_vehicles_there_are(self):
-        self.start()
-        launch = ElementTree.parse(self.folder / "launch" / "stop.launch").getroot()
-        vehicles = next(arg.get("default") for arg in launch.iter("arg") if arg.get("name") == "vehicles")
-        check = train_sim("check", self.folder / "scenarios" / "stop.yaml", "--json")
-        self.assertEqual(json.loads(check.stdout)["vehicles"], int(vehicles))
+    def test_the_commands_that_are_told_run_as_they_are_also_with_a_blank_in_the_name(self):
+        told = re.search("^next: (.*)", self.start().stdout, re.M).group(1)
+        environment = dict(os.environ, PATH=f"{pathlib.Path(TRAIN_SIM).parent}:{os.environ['PATH']}")
+        done = subprocess.run(
+            told, shell=True, cwd=self.elsewhere.name, env=environment, stdout=subprocess.PIPE, text=True, check=False
+        )
+        self.assertEqual(done.returncode, 0)
+        results = str(self.folder / "results" / "stop")
+        self.assertRegex(done.stdout, r"^stop: 19 vehicles, ltd model, stands after [\d.]+ s and [\d.]+ m\n")
+        self.assertIn(f"report '{results}'\n", done.stdout)
+        self.assertTrue(done.stdout.startswith(train_sim("summary", results).stdout))
 
     def test_readme_has_five_lines_whose_commands_are_there(self):
         self.start()

@@ -28,7 +28,7 @@ RUN = [EMERGENCY, "--set", "duration_s=30", "--checkpoint-interval", "2"]
 
 def train_sim(*arguments, **options):
     return subprocess.run(
-        [TRAIN_SIM, "run", *map(str, arguments)],
+        [TRAIN_SIM, "run", "--json", *map(str, arguments)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

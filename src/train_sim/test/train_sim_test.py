@@ -44,7 +44,7 @@ class TrainSimTest(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def run_ok(self, *arguments):
-        done = train_sim("run", *arguments)
+        done = train_sim("run", "--json", *arguments)
         self.assertEqual(0, done.returncode, done.stderr)
         return json.loads(done.stdout)
 
@@ -74,10 +74,44 @@ class TrainSimTest(unittest.TestCase):
         self.assertLess(abs(balance), 1e-6 * energy["initial_j"])
         self.assertRegex(summary["state_digest"], "^[0-9a-f]{16}$")
 
+    def test_people_are_told_in_a_few_lines_what_a_run_came_to(self):
+        for options, where in (
+            (["--out", self.out], f"  results: {self.out}   figures: rosrun train_brake report {self.out}\n"),
+            ([], "  nothing was written: --out FOLDER keeps the results\n"),
+        ):
+            done = train_sim("run", EMERGENCY, "--model", "ltd", "--set", "duration_s=5", *options)
+            self.assertEqual(0, done.returncode, done.stderr)
+            lines = done.stdout.splitlines(keepends=True)
+            self.assertLess(len(lines), 7, done.stdout)
+            self.assertEqual(where, lines[-1])
+            summary = json.loads((self.out / "summary.json").read_text())
+            self.assertIn(
+                "emergency: 242 vehicles, ltd model, ends after 5.0 s and "
+                f"{summary['distance_m']:.1f} m at {summary['final_speed_kmh']['mean']:.1f} km/h",
+                lines[0],
+            )
+        self.assertEqual("".join(lines[:-1]), train_sim("summary", self.out).stdout)
+        # 80 km/h for 5 s at most; the brake takes off less than 1 m/s2 for that time.
+        self.assertTrue(5 * 80 / 3.6 - 0.5 * 5**2 < summary["distance_m"] < 5 * 80 / 3.6, summary["distance_m"])
+
+    def test_what_is_no_summary_is_told(self):
+        self.out.mkdir()
+        for text, told in (
+            (None, "does not exist"),
+            ("[]", "is not the summary of a run"),
+            ("{", "is not the summary"),
+        ):
+            if text:
+                (self.out / "summary.json").write_text(text)
+            done = train_sim("summary", self.out)
+            self.assertEqual((2, ""), (done.returncode, done.stdout))
+            self.assertIn("summary.json", done.stderr)
+            self.assertIn(told, done.stderr)
+
     def test_a_twin_tells_how_far_the_maxima_are_determined(self):
         short = ("--model", "ltd", "--set", "duration_s=5")
         self.assertIsNone(self.run_ok(EMERGENCY, *short)["twin"])
-        done = train_sim("run", EMERGENCY, *short, "--twin")
+        done = train_sim("run", "--json", EMERGENCY, *short, "--twin")
         self.assertEqual(0, done.returncode, done.stderr)
         twin = json.loads(done.stdout)["twin"]
         self.assertEqual(1e-9, twin["start_offset_kmh"])
@@ -664,6 +698,7 @@ class TrainSimTest(unittest.TestCase):
                 "bash",
                 TRAIN_SIM,
                 "run",
+                "--json",
                 EMERGENCY,
                 "--model",
                 "ltd",
@@ -702,7 +737,7 @@ class TrainSimTest(unittest.TestCase):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "none", str(self.out)]).returncode != 0:
             self.skipTest("this machine does not allow mounts")
         try:
-            done = train_sim("run", EMERGENCY, "--model", "ltd", "--out", self.out, "--set", "duration_s=20")
+            done = train_sim("run", "--json", EMERGENCY, "--model", "ltd", "--out", self.out, "--set", "duration_s=20")
             self.assertEqual(1, done.returncode, done.stderr)
             self.assertIn("could not be written", done.stderr)
             self.assertIn("train.bag: No space left on device", done.stderr)
@@ -722,7 +757,7 @@ class TrainSimTest(unittest.TestCase):
             resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000))
 
         done = subprocess.run(
-            [TRAIN_SIM, "run", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
+            [TRAIN_SIM, "run", "--json", DIP, "--csv", "--out", str(self.out), "--set", "record_interval_s=0.001"],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

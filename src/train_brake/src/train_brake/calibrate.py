@@ -169,7 +169,7 @@ class Runs:
     def _run(self, scenario: pathlib.Path, changes: Sequence[str], values: Sequence[float]) -> Dict[str, Any]:
         words = [word for text in [*self.fixed, *changes, *map(str, self.changes(values))] for word in ("--set", text)]
         done = subprocess.run(
-            [*self.train_sim, "run", str(scenario), "--threads", "1", *words],
+            [*self.train_sim, "run", str(scenario), "--json", "--threads", "1", *words],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

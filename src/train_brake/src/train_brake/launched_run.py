@@ -138,33 +138,10 @@ def outlived_output():
                 reader.wait(10)
 
 
-def in_short(summary):
-    """What a person wants to know of a run first, as lines."""
-
-    def force(name, what):
-        largest = summary.get(name)
-        if not largest:
-            return []
-        return [
-            f"{what} {abs(largest['value']) / 1e3:.0f} kN in connection {largest['connection']} at {largest['time_s']:.1f} s"
-        ]
-
-    vehicles = summary.get("vehicles")
-    what = (
-        f"{summary.get('scenario')}: {vehicles} vehicle{'' if vehicles == 1 else 's'}, {summary.get('model')} model, "
-    )
-    if summary.get("stopped"):
-        what += f"stands after {summary['stop_time_s']:.1f} s and {summary['stop_distance_m']:.1f} m"
-    else:
-        speed = summary["final_speed_kmh"]["mean"]
-        what += f"ends after {summary['simulated_s']:.1f} s at {speed:.1f} km/h"
-        if summary.get("complete") and summary.get("ended_by") != "until":
-            what += " (duration_s is over: a greater one, or `until: {standing: true}`, lets it come to a stop)"
-    forces = force("max_tension_n", "largest tension") + force("max_compression_n", "largest compression")
-    lines = [what] + (["  " + ", ".join(forces)] if forces else [])
-    if not summary.get("complete"):
-        lines.append("  INCOMPLETE: " + (summary.get("fault") or "the run was stopped"))
-    return lines
+def in_short(out):
+    """What a person wants to know of a run first, as text; empty if that cannot be told."""
+    command = ["rosrun", "train_sim", "train_sim", "summary", out]
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False).stdout
 
 
 def main(words):
@@ -217,12 +194,6 @@ def run(words):
         if subprocess.run(["rosrun", "train_brake", "report", out], check=False).returncode:
             print(f"The report on the run could not be made. The run itself ended with code {code}.", file=sys.stderr)
     if out and code not in (None, 2):
-        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # what cannot be read is told by the report
-            summary = json.loads(pathlib.Path(out, "summary.json").read_text(encoding="utf-8"))
-            page = pathlib.Path(out, "report.html")
-            print(
-                presentable(
-                    "\n" + "\n".join(in_short(summary) + ([f"  page with figures: {page}"] if page.exists() else []))
-                )
-            )
+        page = pathlib.Path(out, "report.html")
+        print(presentable("\n" + in_short(out) + (f"  page with figures: {page}" if page.exists() else "")))
     return 1 if code is None else code

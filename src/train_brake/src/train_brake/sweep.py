@@ -237,7 +237,7 @@ class Study:
                         return None
                     # In a group of its own: Ctrl-C ends it when this program says so.
                     process = subprocess.Popen(
-                        [*train_sim, "run", "config.yaml", "--threads", "1", *keep],
+                        [*train_sim, "run", "config.yaml", "--json", "--threads", "1", *keep],
                         cwd=run,
                         stdout=out,
                         stderr=log,

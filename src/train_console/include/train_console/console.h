@@ -20,6 +20,9 @@ void PrepareProcess();
 /// that turn the direction of writing (U+202A to U+202E, U+2066 to U+2069). So do bytes that are not UTF-8.
 std::string Presentable(const std::string& text);
 
+/// Text as one word of a shell's command: as it is, or quoted where a shell would split or change it.
+std::string ShellWord(const std::string& text);
+
 /// Writes to the standard error, or not, if that cannot be written. Never throws.
 void WriteMessage(const std::string& text) noexcept;
 

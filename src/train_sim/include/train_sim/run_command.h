@@ -20,6 +20,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: one per core for the 2D model, one for LTD
   bool csv = false;
+  bool json = false;  ///< print the contents of summary.json, and nothing for people
   bool twin = false;  ///< run a twin whose start differs by kTwinOffset, too, and tell how far it comes apart
 };
 
@@ -29,5 +30,10 @@ int Threads(int asked, const train_dynamics::config::LoadedScenario& scenario);
 /// Simulates a scenario with all vehicles in this process.
 /// @throws strict_config::Error, std::exception
 int RunScenario(const RunOptions& options);
+
+/// Tells again what a run came to.
+/// @param folder  of its results
+/// @throws std::invalid_argument if its summary.json is not there or not one
+int TellSummary(const std::string& folder);
 
 }  // namespace train_sim
