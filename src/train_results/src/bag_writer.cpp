@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -93,6 +95,11 @@ ros::Time TimeOf(std::uint64_t nanoseconds) {
   return time;
 }
 
+void Rename(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0)
+    throw std::runtime_error("cannot write " + to + ": " + WriteFailure(errno));
+}
+
 }  // namespace
 
 BagWriter::BagWriter(const std::string& file)
@@ -146,7 +153,7 @@ BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
 
 void BagWriter::GoOn() {
   const std::string active = file_ + ".active";
-  if (std::filesystem::exists(file_)) std::filesystem::rename(file_, active);
+  if (std::filesystem::exists(file_)) Rename(file_, active);
   descriptor_ = open(active.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) Fail();
   Truncate();
@@ -330,7 +337,7 @@ void BagWriter::Close() {
   if (!indexed) works([this] { Truncate(); });
   const bool complete = close(descriptor_) == 0 && indexed;
   descriptor_ = -1;
-  if (complete) std::filesystem::rename(file_ + ".active", file_);
+  if (complete) Rename(file_ + ".active", file_);
   if (error != nullptr) std::rethrow_exception(error);
   if (!complete) Fail();
 }

@@ -76,14 +76,20 @@ void ClearFolder(const fs::path& folder) {
     throw std::runtime_error(folder.string() + " holds " + results.front().filename().string() +
                              ", but no run of train_brake: choose another folder for the results");
   }
-  for (const fs::path& file : results) fs::remove(file);
+  for (const fs::path& file : results) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw std::runtime_error("cannot replace " + file.string() + ": " + error.message());
+  }
 }
 
 /// Everything that a repetition of the run needs, so that it gives the same bits.
 void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
   if (!scenario.pressure_table.empty()) {
-    fs::copy_file(scenario.pressure_table, folder / "pressure_table.csv",
-                  fs::copy_options::overwrite_existing);
+    const fs::path copy = folder / "pressure_table.csv";
+    std::error_code error;
+    fs::copy_file(scenario.pressure_table, copy, fs::copy_options::overwrite_existing, error);
+    if (error) throw std::runtime_error("cannot write " + copy.string() + ": " + WriteFailure(error.value()));
     scenario.pressure_table = "pressure_table.csv";
   }
   WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + strict_config::Write(scenario));

@@ -730,6 +730,19 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(1, process.returncode, stderr)
         self.assertIn("No such file or directory", stderr)
         self.assertNotIn("disk", stderr)
+        self.assertNotIn("filesystem error", stderr)
+
+    def test_a_bag_that_is_removed_is_named(self):
+        process = self.start_endless()
+        bag = self.out / "train.bag.active"
+        while not bag.exists():
+            self.assertIsNone(process.poll())
+            time.sleep(0.05)
+        bag.unlink()
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
+        self.assertEqual(1, process.returncode, stderr)
+        self.assertIn(f"cannot write {self.out}/train.bag: No such file or directory", stderr)
 
     @unittest.skipIf(os.geteuid() != 0, "mounts a small file system, which only root may")
     def test_a_full_disk_ends_the_run_with_what_fits(self):
