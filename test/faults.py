@@ -971,7 +971,7 @@ class Resumed(Matrix):
         self.assert_killed(launch)
         again = self.resume()
         if again.ended() == 2:
-            self.assertIn("nothing is left to do", again.log())
+            self.assertIn("nothing is left to simulate", again.log())
         else:
             self.assert_same(again)
 

@@ -42,6 +42,7 @@ const std::pair<const char*, const char*> kMade[] = {
     {"consist.external", "wagon_003"},
     {"consist.name", "helper"},
     {"consist.initial_slack", "bunched"},
+    {"consist.trapped_cylinder_pressure_kpa", "300"},
     {"speed_above_kmh", "40"},
     {"speed_below_kmh", "30"},
     {"until.position_m", "3000"},

@@ -157,7 +157,7 @@ class ResumeTest(unittest.TestCase):
             process.wait()
         done = train_sim("--resume", self.out)
         if done.returncode == 2:  # the kills came too late
-            self.assertIn("nothing is left to do", done.stderr)
+            self.assertIn("nothing is left to simulate", done.stderr)
         else:
             self.assertEqual(self.summary["state_digest"], json.loads(done.stdout)["state_digest"])
             self.assertEqual(messages(self.whole / "train.bag"), messages(self.out / "train.bag"))
@@ -195,7 +195,7 @@ class ResumeTest(unittest.TestCase):
         self.assertEqual(json.loads(at_once.stdout)["state_digest"], json.loads(done.stdout)["state_digest"])
 
     def test_what_does_not_fit_is_refused(self):
-        self.refused("nothing is left to do", "--resume", self.whole)
+        self.refused("nothing is left to simulate", "--resume", self.whole)
         self.refused("has left no checkpoint", "--resume", self.folder)
         self.refused("give a scenario, or --resume", "--resume", self.whole, EMERGENCY)
         self.refused("give a scenario, or --resume")
