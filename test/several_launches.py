@@ -331,6 +331,23 @@ class SeveralLaunches(LaunchTest):
         branch = self.run_command("runs/two", "resume:=runs/one", "set:=duration_s=0.12", folder=caller)
         self.assertEqual(0, branch[0], branch[1])
 
+    def test_a_machine_that_does_not_know_its_own_name_goes_by_localhost(self):
+        elsewhere = ["unshare", "--uts", "bash", "-c", 'hostname nowhere.invalid && exec "$@"', "bash"]
+        if subprocess.run([*elsewhere, "true"], stderr=subprocess.DEVNULL, check=False).returncode:
+            self.skipTest("only root can give this process's machine another name")
+        environment = {k: v for k, v in self.master.environment.items() if k not in ("ROS_HOSTNAME", "ROS_IP")}
+        done = subprocess.run(
+            [*elsewhere, "rosrun", "train_brake", "run", str(SHORT_TRAIN), "set:=duration_s=0.1", "report:=false"],
+            cwd=self.folder,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=600,
+        )
+        self.assertEqual(0, done.returncode, done.stdout)
+        self.assertIn("this machine's name, nowhere.invalid, leads nowhere: nodes use localhost", done.stdout)
+
     def test_vehicles_0_is_any_train_in_the_master(self):
         launch = self.launch("all", "vehicles:=0", "set:=duration_s=0.2")
         self.assertEqual(0, launch.ended(), launch.log())

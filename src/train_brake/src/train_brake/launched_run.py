@@ -7,10 +7,12 @@ import json
 import os
 import pathlib
 import re
+import socket
 import subprocess
 import sys
 import tempfile
 import time
+import urllib.parse
 
 from train_brake.presentable import accept_all_characters, presentable
 
@@ -59,6 +61,22 @@ def scenario_of(file):
         ["rosrun", "train_sim", "train_sim", "check", "--json", file], stdout=subprocess.PIPE, text=True, check=False
     )
     return json.loads(check.stdout) if check.returncode == 0 else None
+
+
+def call_nodes_by_a_name_that_is_known(arguments):
+    """ROS lets nodes call each other by their machine's name. A bare machine or a container may not know its own: then a run
+    on that machine alone goes by localhost, and the user is told. ROS_HOSTNAME and ROS_IP, where set, stay as they are.
+    """
+    uri = urllib.parse.urlsplit(os.environ.get("ROS_MASTER_URI", "http://localhost:11311"))
+    is_alone = not arguments.get("machines") and uri.hostname in ("localhost", "127.0.0.1", socket.gethostname())
+    if not is_alone or os.environ.get("ROS_HOSTNAME") or os.environ.get("ROS_IP"):
+        return
+    try:
+        socket.getaddrinfo(socket.gethostname(), None)
+    except OSError:
+        os.environ["ROS_HOSTNAME"] = "localhost"
+        text = f"this machine's name, {socket.gethostname()}, leads nowhere: nodes use localhost (ROS_HOSTNAME=... for another)"
+        print(presentable(f"run: {text}"), file=sys.stderr)
 
 
 class EndOfMaster:
@@ -176,6 +194,7 @@ def run(words):
     if out:
         out = arguments["out"] = os.path.abspath(out)
 
+    call_nodes_by_a_name_that_is_known(arguments)
     import roslaunch
 
     with tempfile.TemporaryDirectory() as folder:
