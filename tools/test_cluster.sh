@@ -78,6 +78,7 @@ digest_in() {
 }
 
 . devel/setup.bash
+unset ROS_HOSTNAME  # it would go before ROS_IP
 export HOME=$work/home ROS_IP=$net.1 ROS_MASTER_URI=http://$net.1:11311
 scenario=$workspace/config/scenarios/emergency.yaml
 change="duration_s=1"
