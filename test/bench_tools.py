@@ -326,7 +326,7 @@ class BenchTools(unittest.TestCase):
             "adds 5 % to the CPU time",
             "costs about 0.15 us",
             "fill 2 of the 8 lanes",
-            "overhead of an exchange**: it was met on",
+            "overhead of an exchange**: not explained",
             "five of 2 ms: 30 % of the time",
         ):
             self.assertIn(words, text)

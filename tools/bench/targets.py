@@ -56,7 +56,7 @@ kernel; the ranks of MPI, which never sleep, change {exchange.MPI_switches} time
 FEW_RANKS = """with few ranks an exchange is bound by the time that a sleeping process takes to wake up: the master once and
 each rank once, {exchange.shared_memory_22_cpu_us} us of a core for each of 22 ranks. Those of MPI stay awake and take
 {exchange.MPI_22_cpu_us} us, at the cost of whatever else wants their cores
-([lockstep.md](lockstep.md#memory-in-common))."""
+([lockstep.md](lockstep.md#shared-memory))."""
 TCP = """each rank and exchange takes {exchange.TCP_cpu_us} us of a core, {exchange.TCP_system %} of it in the kernel, which
 carries every message through the network's layers on loopback: three system calls of the rank (wait, receive, send), two of
 the master, against one through shared memory ({exchange.shared_memory_cpu_us} us)."""
@@ -76,7 +76,7 @@ divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_re
     "2d_spread": SPREAD.replace("{model}", "2d"),
     "ltd_spread": SPREAD.replace("{model}", "ltd"),
 }
-NO_REASON = "it was met on the machine that these words were written on; what differs here is not known."
+NO_REASON = "not explained."
 
 
 def table(facts):
