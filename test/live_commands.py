@@ -64,23 +64,22 @@ class LiveCommands(LaunchTest):
         self.assertEqual(0, verified.returncode, verified.stdout)
         self.assertIn(digest, verified.stdout)
 
+    def drivable(self, scenario, *arguments, settings):
+        """A launch whose train takes commands."""
+        words = (f"scenario:={scenario}", *arguments, f"set:={settings}")
+        launch = Launch(self.master, self.folder, ("train_brake", "train.launch"), *words)
+        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
+        return launch
+
     def give(self, **command):
         return self.tool(
             "rosservice", "call", "/train/driver/give", json.dumps({"command": command}).replace("NaN", ".nan")
         )
 
     def test_random_commands_are_repeated_to_the_same_bits(self):
-        launch = Launch(
-            self.master,
-            self.folder,
-            ("train_brake", "train.launch"),
-            f"scenario:={HERE / 'short_train.yaml'}",
-            "vehicles:=6",
-            "nodes:=2",
-            "start_paused:=true",
-            "set:=" + " ".join(SETTINGS),
+        launch = self.drivable(
+            HERE / "short_train.yaml", "vehicles:=6", "nodes:=2", "start_paused:=true", settings=" ".join(SETTINGS)
         )
-        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
         seed = random.Random(20)
         refused = [
             self.give(kind="apply", reduction_kpa=5000.0),
@@ -137,17 +136,9 @@ class LiveCommands(LaunchTest):
 
     def test_two_drivers_at_random_times_are_repeated_to_the_same_bits(self):
         settings = ["commands=[]", "until=null", "duration_s=90", "exchange_interval_s=0.005", "initial_speed_kmh=20"]
-        launch = Launch(
-            self.master,
-            self.folder,
-            ("train_brake", "train.launch"),
-            f"scenario:={FREIGHT}",
-            "vehicles:=11",
-            "model:=ltd",
-            "real_time_factor:=1",
-            "set:=" + " ".join(settings),
+        launch = self.drivable(
+            FREIGHT, "vehicles:=11", "model:=ltd", "real_time_factor:=1", settings=" ".join(settings)
         )
-        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
         drivers = [
             subprocess.Popen(["/usr/bin/python3", "-c", AT_RANDOM, seed], env=self.master.environment) for seed in "12"
         ]
@@ -175,18 +166,14 @@ class LiveCommands(LaunchTest):
     def test_a_patch_of_rail_that_comes_live_is_as_one_of_the_track(self):
         patch = {"from_m": 10.0, "to_m": 60.0, "friction_coefficient": 0.03}
         settings = ["duration_s=4", "record_interval_s=0.02", "ledger_interval_s=1", "detail_vehicles=[]"]
-        launch = Launch(
-            self.master,
-            self.folder,
-            ("train_brake", "train.launch"),
-            f"scenario:={HERE / 'short_train.yaml'}",
+        launch = self.drivable(
+            HERE / "short_train.yaml",
             "vehicles:=6",
             "nodes:=2",
             "real_time_factor:=1",
             "start_paused:=true",
-            "set:=" + " ".join(settings),
+            settings=" ".join(settings),
         )
-        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
         for wrong, words in (
             ({"to_m": 10.0}, "to_m must be greater than from_m"),
             ({"from_m": float("nan")}, "from_m must be finite, got "),
@@ -215,15 +202,12 @@ class LiveCommands(LaunchTest):
         self.assertEqual(longer["state_digest"], json.loads((branch / "summary.json").read_text())["state_digest"])
 
     def test_keys_and_joystick_of_a_cab(self):
-        launch = Launch(
-            self.master,
-            self.folder,
-            ("train_brake", "train.launch"),
-            f"scenario:={FREIGHT}",
+        launch = self.drivable(
+            FREIGHT,
             "vehicles:=11",
             "model:=ltd",
             "real_time_factor:=1",
-            "set:=commands=[] until=null duration_s=600 exchange_interval_s=0.005",
+            settings="commands=[] until=null duration_s=600 exchange_interval_s=0.005",
         )
         terminal, end = pty.openpty()
         cab = subprocess.Popen(
@@ -234,7 +218,6 @@ class LiveCommands(LaunchTest):
         )
         self.addCleanup(cab.kill)
         press = lambda keys: os.write(terminal, keys.encode())
-        self.assertTrue(wait_until(lambda: "/train/driver/give" in self.master.services(), 120), launch.log())
         self.assertTrue(wait_until(lambda: "/train/cab_controls/get_loggers" in self.master.services(), 120))
         time.sleep(3)  # until they are connected
         press("wwws")
