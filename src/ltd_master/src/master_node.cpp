@@ -205,8 +205,7 @@ void MasterNode::TellWhatIsNotUsed() const {
        driver.sees_couplers != defaults.sees_couplers))
     ROS_WARN(
         "control_period, driver_timeout, on_lost_driver, driver_sight and driver_sees_couplers are not used: "
-        "there is no "
-        "driver in lockstep (driver:=NODE)");
+        "there is no driver in lockstep (driver:=NODE)");
   const std::string& folder = options_.output.folder.empty() ? options_.resume : options_.output.folder;
   if (folder.empty()) {
     ROS_INFO("no results are kept (out:=FOLDER keeps them)");
