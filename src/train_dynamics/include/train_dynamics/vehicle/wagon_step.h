@@ -529,10 +529,12 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
 template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
                WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
-  const T zero(0.0);
-  const bool has_rare_loads = AnyOf(loads.traction_n != zero) || AnyOf(loads.dynamic_brake_n != zero) ||
-                              AnyOf(loads.curving_resistance_n != zero) ||
-                              AnyOf(loads.breakaway_resistance_n != zero);
+  bool has_rare_loads = false;
+  ForEachLoad(
+      [&](const LoadInfo& load, const T& value) {
+        has_rare_loads |= load.given == Given::kWhereUsed && AnyOf(value != T(0.0));
+      },
+      loads);
   const bool is_plain = w.IsPlain() && track.IsPlain() && !has_rare_loads;
   const auto step = !is_plain   ? &StepWagonWith<true, true, T, kPerBogie>
                     : Reacts(w) ? &StepWagonWith<false, true, T, kPerBogie>
