@@ -265,7 +265,7 @@ TEST(AirBrake, ASmallerReductionGoesDownToItsPressureWithGraduatedRelease) {
 TEST(AirBrake, TellsOfCommandsWithoutEffectAndOfReservoirs) {
   const auto of = [](const std::vector<BrakeCommand>& commands) {
     std::string text;
-    for (const Warning& warning : PaperBrake().Warnings(commands))
+    for (const Warning& warning : PaperBrake().Warnings(commands, 242))
       text += warning.key + ": " + warning.text + "\n";
     return text;
   };

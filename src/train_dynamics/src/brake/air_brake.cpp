@@ -175,7 +175,8 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
   return broken;
 }
 
-std::vector<Warning> AirBrakeParams::Warnings(const std::vector<BrakeCommand>& commands) const {
+std::vector<Warning> AirBrakeParams::Warnings(const std::vector<BrakeCommand>& commands,
+                                              int /*vehicles*/) const {
   std::vector<Warning> warnings;
   const std::vector<Obeyed> obeyed = Obey(*this, commands);
   std::size_t re_applications = 0, first = 0;

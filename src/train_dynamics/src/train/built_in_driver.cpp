@@ -184,12 +184,7 @@ DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemPar
     if (consist.vehicle(i).traction && consist.vehicle(i).traction->dynamic_brake)
       train.dynamic_brakes.push_back(i + 1);
   }
-  const bool is_empirical = brake.kind == BrakeSystemKind::kEmpirical;
-  train.graduated_release =
-      is_empirical
-          ? brake.empirical.graduated_release
-          : std::all_of(brake.pneumatic.valves.begin(), brake.pneumatic.valves.end(),
-                        [](const auto& valve) { return valve.kind != ControlValveKind::kDirectRelease; });
+  train.graduated_release = brake.ReleasesGradually();
   constexpr double kSettle_s = 120.0;
   const auto force_of = [&](const std::vector<double>& pressure_pa, double speed_mps) {
     double force_n = 0.0;

@@ -145,7 +145,8 @@ struct AirBrakeParams {
   /// What commands break in a train of so many vehicles, by the keys of a scenario.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
   /// Commands without effect, and applications that this model gives too much pressure.
-  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands) const;
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  bool ReleasesGradually() const { return graduated_release; }
 };
 
 /// Every vehicle's cylinder as phases, in each of which its pressure tends to a target:

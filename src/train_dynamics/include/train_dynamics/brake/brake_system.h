@@ -38,13 +38,28 @@ struct BrakeSystemParams {
     v.Group("locomotive_brake", locomotive_brake, "brakes of the locomotives besides that of the train");
   }
 
+  /// function(the parameters of this kind). The compiler asks for the entry of a new kind.
+  template <class Function>
+  auto OfKind(Function&& function) const {
+    switch (kind) {
+      case BrakeSystemKind::kPneumatic:
+        return function(pneumatic);
+      case BrakeSystemKind::kEmpirical:
+        break;
+    }
+    return function(empirical);
+  }
+
   /// What these commands break in a train of so many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
-    return kind == BrakeSystemKind::kEmpirical ? empirical.BrokenRules(commands, vehicles)
-                                               : pneumatic.BrokenRules(commands, vehicles);
+    return OfKind([&](const auto& system) { return system.BrokenRules(commands, vehicles); });
   }
   std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const {
-    return kind == BrakeSystemKind::kEmpirical ? empirical.Warnings(commands) : pneumatic.Warnings(vehicles);
+    return OfKind([&](const auto& system) { return system.Warnings(commands, vehicles); });
+  }
+  /// Whether a smaller reduction lets all cylinders down to its pressure.
+  bool ReleasesGradually() const {
+    return OfKind([](const auto& system) { return system.ReleasesGradually(); });
   }
 };
 

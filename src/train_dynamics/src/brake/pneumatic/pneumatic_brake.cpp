@@ -167,7 +167,14 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
   return broken;
 }
 
-std::vector<Warning> PneumaticBrakeParams::Warnings(int n) const {
+bool PneumaticBrakeParams::ReleasesGradually() const {
+  return std::all_of(valves.begin(), valves.end(), [](const ControlValveParams& valve) {
+    return valve.kind != ControlValveKind::kDirectRelease;
+  });
+}
+
+std::vector<Warning> PneumaticBrakeParams::Warnings(const std::vector<BrakeCommand>& /*commands*/,
+                                                    int n) const {
   std::vector<Warning> warnings;
   std::vector<int> of_valve(valves.size(), 0);
   int direct = 0, graduated = 0, ecp = 0;

@@ -234,7 +234,8 @@ struct PneumaticBrakeParams {
 
   /// What breaks in a train of so many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
-  std::vector<Warning> Warnings(int vehicles) const;
+  std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
+  bool ReleasesGradually() const;
   /// Of each vehicle: the index of its valve.
   std::vector<int> ValveOfVehicle(int vehicles) const;
 };
