@@ -161,7 +161,7 @@ def configured_speed_mps(run: Run, is_release: bool) -> Optional[float]:
     """Of the first command of that kind; None if the configuration does not say it."""
     brake = (run.config or {}).get("brake")
     commands = [c for c in run.brake_commands if (c["kind"] == "release") == is_release]
-    if not brake or not commands or run.config.get("pressure_table") or brake.get("kind") == "pneumatic":
+    if not brake or not commands or run.config.get("pressure_table") or "service" not in brake:
         return None
     if is_release:
         return brake["release"]["wave_speed_mps"]
