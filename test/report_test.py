@@ -555,6 +555,12 @@ class ReportTest(unittest.TestCase):
             (150.0, 180.0), (wave.configured_speed_mps(minimum, False), wave.configured_speed_mps(minimum, True))
         )
 
+    def test_a_brake_without_a_table_has_no_configured_wave_speed(self):
+        run = Run(ltd(), None)
+        for kind in ("pneumatic", "of_a_later_version"):
+            run.config["brake"] = {"name": "other", "kind": kind}
+            self.assertIsNone(wave.configured_speed_mps(run, False), kind)
+
     def test_wave_speed_of_pressures_made_up(self):
         """Straight rises that begin at known times: the fit is then exact, but for the rounding of the pressures."""
         distance_m = 12.0 * numpy.arange(50)
