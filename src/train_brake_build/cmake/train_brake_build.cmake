@@ -31,7 +31,8 @@ function(train_brake_configure_target target)
   if(TRAIN_BRAKE_SANITIZE)
     # Warnings stay warnings here: instrumented code confuses the compiler's flow analysis.
     set(sanitize -fsanitize=${TRAIN_BRAKE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    target_compile_options(${target} PRIVATE ${sanitize})
+    target_compile_options(${target} PRIVATE ${sanitize} -g1)  # lines in reports, no variables
+    target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_SANITIZED)
     target_link_libraries(${target} ${sanitize})
   elseif(TRAIN_BRAKE_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)

@@ -52,7 +52,8 @@ Stop QuarterWagonStop(const std::optional<SlideProtectionParams>& params, double
     }
     const double torque = r * 0.25 * 0.46035 * pressure * ShoeFriction(shoe, v);
     const CreepLaw<double> law = FreezeCreepLaw(low, stiffness, weight, low.friction_coefficient, v, 0.01);
-    const RollingResult<double> out = StepRolling(rolling, law, {v, omega, 0.0, torque, torque}, kDt);
+    const RollingResult<double> out =
+        StepRolling(rolling, law, {v, omega, 0.0, torque, torque, v - rolling.radius_m * omega}, kDt);
     const double moved = 0.5 * kDt * (v + out.speed), turned = 0.5 * kDt * r * (omega + out.spin);
     stop.slip_energy_j += out.creep_force * (moved - turned);
     stop.distance_m += moved;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -50,6 +51,7 @@ double ExactForce(const CreepLaw<double>& law, double h, double w0) {
   return std::copysign(PolachForce(law, high).force, w0);
 }
 
+// From any guess: that of the step before, off by a little or by much, of the wrong sign, none, beyond all bounds.
 TEST(SolveSlip, MeetsTheImplicitEquation) {
   for (const char* name : {"paper", "dry", "wet", "low", "very_low"}) {
     const AdhesionParams rail = Rail(name);
@@ -57,22 +59,21 @@ TEST(SolveSlip, MeetsTheImplicitEquation) {
       for (const double h : {LockedCompliance(), TurningCompliance()}) {
         for (const double speed : {0.0, 0.02, 0.1, 0.5, 2.0, 5.0, 10.0, 22.2, 40.0}) {
           const CreepLaw<double> law = LawOf(rail, normal, speed);
-          for (double w0 = 1e-7; w0 < 45.0; w0 *= 1.1) {
-            const SlipSolution<double> s = SolveSlip(law, h, w0);
-            const double exact = ExactForce(law, h, w0);
-            const double used = exact / law.friction_limit, error = (s.force - exact) / law.friction_limit;
-            // Three Newton steps from below: exact where up to half of the friction is used (service braking
-            // uses a tenth), 3e-4 of the friction up to three quarters, at worst 1.6 % close to full sliding
-            // below 2 m/s; and always too much force, never too little, so that the error damps the slip.
-            EXPECT_LT(std::abs(error), used < 0.5    ? 1e-6
-                                       : used < 0.75 ? 3e-4
-                                                     : 0.017)
-                << name << speed << " " << w0;
-            EXPECT_GT(error, -1e-9);
-            EXPECT_LE(s.force, law.friction_limit * (1.0 + 1e-12));  // 1e-12: s.force is a difference over h
-            EXPECT_GE(s.slip, 0.0);
-            // By construction, to the rounding of the difference w0 - w.
-            EXPECT_NEAR(s.slip + h * s.force, w0, 1e-15 * w0);
+          for (double w0 = 1e-7; w0 < 45.0; w0 *= 1.2) {
+            const double exact = ExactForce(law, h, w0), slip = w0 - h * exact;
+            for (const double guess :
+                 {0.0, slip, 0.9995 * slip, 1.03 * slip, 0.5 * slip, 2.0 * slip, -w0, 1e3}) {
+              const SlipSolution<double> s = SolveSlip(law, h, w0, guess);
+              const double error = (s.force - exact) / law.friction_limit;
+              // Too much force, hardly ever too little, so that the error damps the slip.
+              EXPECT_LT(error, 1e-6) << name << speed << " " << w0 << " " << guess;
+              EXPECT_GT(error, -1e-8) << name << speed << " " << w0 << " " << guess;
+              EXPECT_LE(s.force,
+                        law.friction_limit * (1.0 + 1e-12));  // 1e-12: s.force is a difference over h
+              EXPECT_GE(s.slip, 0.0);
+              // By construction, to the rounding of the difference w0 - w.
+              EXPECT_NEAR(s.slip + h * s.force, w0, 1e-15 * w0);
+            }
           }
         }
       }
@@ -80,16 +81,17 @@ TEST(SolveSlip, MeetsTheImplicitEquation) {
   }
 }
 
-// The brief of the solver in newtons, for the paper's wheel: below 50 N up to nine tenths of the friction.
-TEST(SolveSlip, LessThanFiftyNewtonsOnThePapersRail) {
-  for (const double h : {LockedCompliance(), TurningCompliance()}) {
-    for (double speed = 0.0; speed < 40.0; speed += speed < 1.0 ? 0.02 : 0.5) {
-      const CreepLaw<double> law = LawOf(Rail("paper"), kAxleLoad, speed);
-      for (double w0 = 1e-6; w0 < 3.0; w0 *= 1.1) {
-        const double exact = ExactForce(law, h, w0);
-        if (exact > 0.9 * law.friction_limit) continue;
-        EXPECT_NEAR(SolveSlip(law, h, w0).force, exact, 50.0) << speed << " " << w0;
-      }
+// How long one wheelset takes to arrive changes nothing for those beside it.
+TEST(SolveSlip, WheelsetsSideBySideAreSolvedAsAlone) {
+  const CreepLaw<double> dry = LawOf(Rail("dry"), kAxleLoad, 3.0), low = LawOf(Rail("low"), 1e5, 12.0);
+  for (const double w0 : {1e-4, 0.02, 0.3, 11.0}) {
+    for (const double guess : {0.0, 1e-4, 0.02, 11.0}) {
+      const std::array<SlipSolution<double>, 3> together = SolveSlip<double, 3>(
+          {dry, low, dry}, {TurningCompliance(), LockedCompliance(), TurningCompliance()}, {w0, 0.2, -w0},
+          {guess, 0.19, 0.0});
+      EXPECT_EQ(together[0].force, SolveSlip(dry, TurningCompliance(), w0, guess).force);
+      EXPECT_EQ(together[1].force, SolveSlip(low, LockedCompliance(), 0.2, 0.19).force);
+      EXPECT_EQ(together[2].force, SolveSlip(dry, TurningCompliance(), -w0, 0.0).force);
     }
   }
 }
@@ -97,9 +99,11 @@ TEST(SolveSlip, LessThanFiftyNewtonsOnThePapersRail) {
 TEST(SolveSlip, IsExactlyOddAndVanishesWithTheLoad) {
   const CreepLaw<double> law = LawOf(Rail("dry"), kAxleLoad, 3.0);
   for (double w0 = 1e-6; w0 < 30.0; w0 *= 2.0) {
-    EXPECT_EQ(SolveSlip(law, TurningCompliance(), -w0).force, -SolveSlip(law, TurningCompliance(), w0).force);
-    EXPECT_EQ(SolveSlip(law, TurningCompliance(), -w0).slip, -SolveSlip(law, TurningCompliance(), w0).slip);
-    const SlipSolution<double> free = SolveSlip(LawOf(Rail("dry"), 0.0, 3.0), TurningCompliance(), w0);
+    const SlipSolution<double> forward = SolveSlip(law, TurningCompliance(), w0, 1e-3);
+    const SlipSolution<double> backward = SolveSlip(law, TurningCompliance(), -w0, -1e-3);
+    EXPECT_EQ(backward.force, -forward.force);
+    EXPECT_EQ(backward.slip, -forward.slip);
+    const SlipSolution<double> free = SolveSlip(LawOf(Rail("dry"), 0.0, 3.0), TurningCompliance(), w0, 1e-3);
     EXPECT_EQ(free.force, 0.0);
     EXPECT_EQ(free.slip, w0);
   }
@@ -118,7 +122,7 @@ TEST(SolveSlip, AnExplicitStepIsUnstableWhereThisOneIsNot) {
       const double f = std::copysign(PolachForce(law, std::abs(explicit_slip)).force, explicit_slip);
       if (step > 1000) largest_force = std::max(largest_force, std::abs(f));
       explicit_slip += h * (pull - f);
-      const SlipSolution<double> s = SolveSlip(law, h, implicit_slip + h * pull);
+      const SlipSolution<double> s = SolveSlip(law, h, implicit_slip + h * pull, implicit_slip);
       implicit_slip = s.slip;
       implicit_force = s.force;
     }
@@ -153,7 +157,8 @@ std::vector<Case> RandomCases(int count, bool with_traction) {
     const double traction = with_traction ? uniform(-3e4, 3e4) : 0.0;
     const double normal = i % 11 == 0 ? 0.0 : std::pow(10.0, uniform(3.0, 5.9));
     cases.push_back({LawOf(rails[i % rails.size()], normal, speed),
-                     {speed + uniform(-0.01, 0.01), spin, traction, brake, brake * (i % 4 < 2 ? 1.0 : 1.3)}});
+                     {speed + uniform(-0.01, 0.01), spin, traction, brake, brake * (i % 4 < 2 ? 1.0 : 1.3),
+                      speed - r * spin}});
   }
   return cases;
 }
@@ -167,7 +172,7 @@ TEST(StepRolling, BooksMomentumAndEnergyExactly) {
     // Tolerances: rounding, a few ulp of the momenta involved.
     const double momentum = m * std::abs(c.in.speed);
     EXPECT_NEAR(m * out.speed, m * c.in.speed - kDt * out.creep_force,
-                4e-16 * (momentum + kDt * std::abs(out.creep_force)));
+                6e-16 * (momentum + kDt * std::abs(out.creep_force)));
     const double torque = c.in.traction_torque + r * out.creep_force - out.brake_torque;
     const double spin_scale =
         j * std::abs(c.in.spin) +
@@ -223,8 +228,7 @@ TEST(StepRolling, SolvesTheSetValuedEquations) {
   for (const Case& c : RandomCases(2000, true)) {
     const RollingResult<double> out = StepRolling(PaperWagon().rolling, c.law, c.in, kDt);
     const RollingResult<double> exact = ExactRolling(c.law, c.in);
-    // 1.7 % of the friction limit: the error of SolveSlip close to full sliding, see above.
-    const double tolerance = 0.017 * c.law.friction_limit + 1e-6;
+    const double tolerance = 1e-6 * c.law.friction_limit + 1e-6;  // that of SolveSlip, see above
     const double spare = c.in.holding_torque - std::abs(HoldingTorque(c.law, c.in));
     if (c.in.holding_torque > c.in.brake_torque && std::abs(spare) < r * tolerance) continue;  // on the edge
     EXPECT_NEAR(out.creep_force, exact.creep_force, tolerance);
@@ -265,8 +269,8 @@ TEST(StepRolling, TheBrakeNeverDrivesTheWheel) {
 
 TEST(StepRolling, IsTheSameInBothDirections) {
   for (const Case& c : RandomCases(5000, true)) {
-    const RollingInput<double> mirrored{-c.in.speed, -c.in.spin, -c.in.traction_torque, c.in.brake_torque,
-                                        c.in.holding_torque};
+    const RollingInput<double> mirrored{-c.in.speed,       -c.in.spin,          -c.in.traction_torque,
+                                        c.in.brake_torque, c.in.holding_torque, -c.in.slip};
     const RollingResult<double> out = StepRolling(PaperWagon().rolling, c.law, c.in, kDt);
     const RollingResult<double> back = StepRolling(PaperWagon().rolling, c.law, mirrored, kDt);
     EXPECT_EQ(out.speed, -back.speed);
@@ -281,8 +285,9 @@ TEST(StepRolling, LocksStaysLockedAndTurnsAgain) {
   const double r = inertia.radius_m;
   double v = 10.0, spin = 10.0 / r;
   const auto step = [&](const char* rail, double brake) {
-    const RollingResult<double> out = StepRolling(inertia, LawOf(Rail(rail), kAxleLoad, v),
-                                                  RollingInput<double>{v, spin, 0.0, brake, brake}, kDt);
+    const RollingResult<double> out =
+        StepRolling(inertia, LawOf(Rail(rail), kAxleLoad, v),
+                    RollingInput<double>{v, spin, 0.0, brake, brake, v - r * spin}, kDt);
     spin = out.spin;  // the vehicle's mass keeps the speed
     return out;
   };
@@ -307,7 +312,7 @@ TEST(StepRolling, LocksStaysLockedAndTurnsAgain) {
 TEST(StepRolling, WithoutBrakeAndSlipNothingHappens) {
   const double r = PaperWagon().rolling.radius_m;
   for (const double v : {-30.0, 0.0, 0.004, 17.0}) {
-    const RollingInput<double> in{v, v / r, 0.0, 0.0, 0.0};
+    const RollingInput<double> in{v, v / r, 0.0, 0.0, 0.0, 0.0};
     const RollingResult<double> out =
         StepRolling(PaperWagon().rolling, LawOf(Rail("dry"), kAxleLoad, v), in, kDt);
     // v - r (v / r) is zero or the last bit of v; the creep law makes at most 1e9 Ns/m x 4e-15 m/s of it.

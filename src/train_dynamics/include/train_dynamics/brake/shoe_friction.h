@@ -365,8 +365,8 @@ T ShoeLoad(const BrakeRigging& rigging, T cylinder_pressure_pa) {
 
 /// ShoeForce of a rigging that is not plain. A function of its own, so that the step of all others does not grow.
 template <class T>
-[[gnu::noinline, gnu::flatten]] T ShoeForceByLaw(const BrakeRigging& rigging, T cylinder_pressure_pa,
-                                                 T speed) {
+[[gnu::noinline]] TRAIN_DYNAMICS_FLATTEN T ShoeForceByLaw(const BrakeRigging& rigging, T cylinder_pressure_pa,
+                                                          T speed) {
   const T load = ShoeLoad(rigging, cylinder_pressure_pa);
   return load * ShoeFrictionByLaw(rigging.params.shoe_friction, speed, load * (1.0 / rigging.params.shoes)) +
          rigging.hand_brake_n;

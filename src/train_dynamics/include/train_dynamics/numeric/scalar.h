@@ -4,6 +4,14 @@
 #include <cmath>
 #include <cstdint>
 
+/// Before a function that calls laws: all of these become part of it. (Not in a build with sanitizers, whose checks in
+/// such a function keep the compiler busy for a quarter of an hour.)
+#ifdef TRAIN_BRAKE_SANITIZED
+#define TRAIN_DYNAMICS_FLATTEN
+#else
+#define TRAIN_DYNAMICS_FLATTEN [[gnu::flatten]]
+#endif
+
 /// The words in which a law is written once, for one number or for several side by side.
 ///
 /// A law is a template over a scalar type T: `double`, or a pack of doubles (numeric/lanes.h). It may use

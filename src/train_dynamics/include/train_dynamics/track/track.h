@@ -218,13 +218,25 @@ RailHeight<T> RailHeightUnder(const Track& track, const T& position_m) {
   return {Load<T>(height), Load<T>(slope)};
 }
 
+/// The same surface under all wheels of a vehicle, and of those side by side.
+struct OneSurface {
+  double friction;                 ///< mu0 [-]
+  const AdhesionParams* adhesion;  ///< holds A, B, kA and kS
+};
+
 /// The surface outside of every patch: the vehicle's own.
+/// @tparam T  only tells the instances of kernels apart
 /// @param vehicle  must outlive what is returned
 template <class T>
-RailSurface<T> OwnSurface(const AdhesionParams& vehicle) {
+OneSurface OwnSurface(const AdhesionParams& vehicle) {
+  return {vehicle.friction_coefficient, &vehicle};
+}
+
+template <class T>
+RailSurface<T> Under(const OneSurface& one) {
   RailSurface<T> surface;
-  surface.friction = T(vehicle.friction_coefficient);
-  surface.adhesion = &vehicle;
+  surface.friction = T(one.friction);
+  surface.adhesion = one.adhesion;
   return surface;
 }
 
@@ -232,7 +244,7 @@ RailSurface<T> OwnSurface(const AdhesionParams& vehicle) {
 /// @param vehicle  the vehicle's own surface, outside of every patch; must outlive what is returned
 template <class T>
 RailSurface<T> RailSurfaceUnder(const Track& track, const T& position_m, const AdhesionParams& vehicle) {
-  RailSurface<T> surface = OwnSurface<T>(vehicle);
+  RailSurface<T> surface = Under<T>(OwnSurface<T>(vehicle));
   if (!track.has_patches) return surface;
   const Track::SurfaceStretch first = track.SurfaceFrom(FirstLane(position_m), vehicle);
   if (AllOn(first.on, position_m)) {

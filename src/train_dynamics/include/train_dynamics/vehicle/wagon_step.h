@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "train_dynamics/vehicle/wagon.h"
 
 namespace train_dynamics {
@@ -24,14 +26,16 @@ template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
                double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
-/// The same, compiled for a kind of vehicle.
-/// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) and a plain track (Track::IsPlain) do not
-///               have, and the loads that few trains have (Given::kWhereUsed); without these the bits are the same and
-///               the time is less
+/// The same, compiled for a kind of vehicle and rail.
+/// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) do not have, the loads that few trains have
+///               (Given::kWhereUsed), and the look-up of dips and surfaces; without these the bits are the same and the
+///               time is less
 /// @tparam kReacts  whether torques on wheelsets may react on the vehicle (BrakeReaction)
+/// @param surface  the one under all wheels, which is on no dip, see FindOneSurface; of kAll = false
 template <bool kAll, bool kReacts, class T, int kPerBogie>
-void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
-                   double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
+void StepWagonWith(const BogieVehicle<kPerBogie>& wagon, const Track& track, const OneSurface& surface,
+                   const VehicleLoads<T>& loads, double dt, WagonState<T, kPerBogie>& s,
+                   WagonOutput<T, kPerBogie>* output);
 
 /// Whether torques on the wheelsets react on the vehicle.
 template <int kPerBogie>
@@ -60,18 +64,45 @@ struct RailForces {
   std::array<RailSurface<T>, kWheelsetsOf<kPerBogie>> surface;
 };
 
-/// @tparam kAll  see StepWagonWith
+/// Where a wheelset is on the track [m]. @param x  of its body [m]
+template <class T, int kPerBogie>
+T WheelsetPosition(const BogieVehicle<kPerBogie>& w, const T& origin_m, const T& x, int wheelset) {
+  return origin_m + (x + w.wheelset_offset_m[wheelset]);
+}
+
+template <class T, int kPerBogie>
+bool FindOneSurface(const BogieVehicle<kPerBogie>& w, const Track& track, double dt,
+                    const WagonState<T, kPerBogie>& s, OneSurface& surface) {
+  Stretch under{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
+    const int b = kWheelset1 + i;
+    const T x = s.position.x[b] + 0.5 * dt * s.velocity.x[b];  // as Drift has it
+    double at[kLanesOf<T>];
+    Store(WheelsetPosition(w, s.origin_m, x, i), at);
+    for (const double one : at) under = {Min(one, under.from_m), Max(one, under.to_m)};
+  }
+  const auto holds = [under](const Stretch& on) { return on.from_m <= under.from_m && under.to_m < on.to_m; };
+  surface = OwnSurface<T>(w.params.wheel_rail.adhesion);
+  if (track.has_dips && !holds(track.FlatFrom(under.from_m))) return false;
+  if (!track.has_patches) return true;
+  const Track::SurfaceStretch one = track.SurfaceFrom(under.from_m, w.params.wheel_rail.adhesion);
+  if (!holds(one.on)) return false;
+  surface = {one.friction, one.adhesion};
+  return true;
+}
+
+/// @tparam kAll, @param surface  see StepWagonWith
 template <bool kAll, class T, int kPerBogie>
 RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
-                                       const WagonState<T, kPerBogie>& s) {
+                                       const OneSurface& surface, const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   RailForces<T, kPerBogie> rail;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
     RailHeight<T> point{T(0.0), T(0.0)};
-    rail.surface[i] = OwnSurface<T>(w.params.wheel_rail.adhesion);
+    rail.surface[i] = Under<T>(surface);
     if constexpr (kAll) {
-      const T at = s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]);
+      const T at = WheelsetPosition(w, s.origin_m, s.position.x[b], i);
       point = RailHeightUnder(track, at);
       rail.surface[i] = RailSurfaceUnder(track, at, w.params.wheel_rail.adhesion);
     }
@@ -87,9 +118,9 @@ RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const T
 
 /// ContactForces on any track. A function of its own: its look-ups would take registers from the rest of the step.
 template <class T, int kPerBogie>
-[[gnu::noinline, gnu::flatten]] RailForces<T, kPerBogie> ContactForcesOnAnyTrack(
+[[gnu::noinline]] TRAIN_DYNAMICS_FLATTEN RailForces<T, kPerBogie> ContactForcesOnAnyTrack(
     const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<T, kPerBogie>& s) {
-  return ContactForces<true>(w, track, s);
+  return ContactForces<true>(w, track, {}, s);
 }
 
 /// Friction forces of the wedges of all bogies that bring their relative rates to rest or reach their bounds.
@@ -216,7 +247,7 @@ struct ShoeForces {
 
 /// The same by any rigging and law of friction, and where each wheelset has a cylinder pressure of its own.
 template <class T, int kPerBogie>
-[[gnu::noinline, gnu::flatten]] ShoeForces<T, kPerBogie> ShoeForcesOfCylinders(
+[[gnu::noinline]] TRAIN_DYNAMICS_FLATTEN ShoeForces<T, kPerBogie> ShoeForcesOfCylinders(
     const BogieVehicle<kPerBogie>& w, const std::array<T, kMostWheelsets>& pressure, T icy_factor,
     const BodyVector<T, kPerBogie>& v0) {
   constexpr double kShare = 1.0 / kWheelsetsOf<kPerBogie>;
@@ -288,7 +319,7 @@ std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
 /// RollOn where vehicles side by side meet different surfaces, or some wheelsets have drives. A function of its own, so
 /// that the step of all others does not grow.
 template <class T, int kPerBogie>
-[[gnu::noinline, gnu::flatten]] std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixed(
+[[gnu::noinline]] TRAIN_DYNAMICS_FLATTEN std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOnMixed(
     const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
     const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
     const BodyVector<T, kPerBogie>& v0) {
@@ -314,7 +345,7 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
   bool mixed = kAll && w.some_driven;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    mixed |= rail.surface[i].adhesion == nullptr;
+    mixed |= kAll && rail.surface[i].adhesion == nullptr;
     T push = force.x[b] - rail.normal[i] * rail.slope[i];
     T traction = outer.traction, others = outer.rolling + outer.dynamic_brake;
     if (kAll) {
@@ -326,14 +357,17 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
       step.traction[i] = traction;
       others = outer.rolling + w.driven[i] * outer.dynamic_brake;
     }
-    rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push, v0.pitch[b], r * traction,
-                  r * (step.shoes.turning[i] + others), r * (step.shoes.standing[i] + others)};
+    rolling[i] = {v0.x[b] + (dt * w.inv_mass_per_kg[b]) * push,
+                  v0.pitch[b],
+                  r * traction,
+                  r * (step.shoes.turning[i] + others),
+                  r * (step.shoes.standing[i] + others),
+                  v0.x[b] - r * v0.pitch[b]};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
-      mixed
-          ? RollOnMixed(w, rail, rolling, dt, v0)
-          : RollOn(w, rail, rolling, dt, v0, w.rolling,
-                   [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
+      mixed ? RollOnMixed(w, rail, rolling, dt, v0)
+            : RollOn(w, rail, rolling, dt, v0, w.rolling,
+                     [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
 
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
@@ -482,8 +516,9 @@ void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
 }
 
 template <bool kAll, bool kReacts, class T, int kPerBogie>
-void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads,
-                   double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
+void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const OneSurface& surface,
+                   const VehicleLoads<T>& loads, double dt, WagonState<T, kPerBogie>& s,
+                   WagonOutput<T, kPerBogie>* output) {
   const BodyVector<T, kPerBogie>& v0 = s.velocity;
   BodyVector<T, kPerBogie> v1;
   Drift(v0, 0.5 * dt, s.position);
@@ -494,7 +529,7 @@ void StepWagonWith(const BogieVehicle<kPerBogie>& w, const Track& track, const V
   const ElementVector<T, kPerBogie> elastic = ElasticForces(w, deflection);
   ElementVector<T, kPerBogie> dissipative = DampingForces<kAll>(w, deflection, elastic, rate0);
   const RailForces<T, kPerBogie> rail =
-      kAll ? ContactForcesOnAnyTrack(w, track, s) : ContactForces<false>(w, track, s);
+      kAll ? ContactForcesOnAnyTrack(w, track, s) : ContactForces<false>(w, track, surface, s);
   const OuterForces<T> outer = OuterForcesOn<kAll>(w, track, loads, s);
   BodyVector<T, kPerBogie> force;
   AddElementForces(w, elastic, force);
@@ -535,11 +570,13 @@ void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const Vehic
         has_rare_loads |= load.given == Given::kWhereUsed && AnyOf(value != T(0.0));
       },
       loads);
-  const bool is_plain = w.IsPlain() && track.IsPlain() && !has_rare_loads;
-  const auto step = !is_plain   ? &StepWagonWith<true, true, T, kPerBogie>
+  const bool all = !w.IsPlain() || has_rare_loads;
+  OneSurface surface;
+  const bool looks_up = all || !FindOneSurface(w, track, dt, s, surface);
+  const auto step = looks_up    ? &StepWagonWith<true, true, T, kPerBogie>
                     : Reacts(w) ? &StepWagonWith<false, true, T, kPerBogie>
                                 : &StepWagonWith<false, false, T, kPerBogie>;
-  step(w, track, loads, dt, s, output);
+  step(w, track, surface, loads, dt, s, output);
 }
 
 }  // namespace train_dynamics

@@ -16,6 +16,7 @@ struct RollingInput {
   T traction_torque;  ///< [Nm], forward positive
   T brake_torque;    ///< largest torque that brakes and resistance can exert on the turning wheels [Nm], >= 0
   T holding_torque;  ///< the same on wheels that stand [Nm], >= brake_torque
+  T slip;            ///< w at the start of the step [m/s]: where the search for that at the end begins
 };
 
 /// The rolling motion at the end of the step and what it took.
@@ -49,36 +50,66 @@ struct SlipSolution {
   T slip, force;
 };
 
-/// Solves w + h F(w) = w0 by Newton's method.
+/// Newton's iterate after w of w + h F(w) = goal, by sizes, held between bounds.
+template <class T, class P>
+T NextSlip(const CreepLaw<T, P>& law, const T& h, const T& goal, const T& lowest, const T& w) {
+  const CreepForce<T> creep = PolachForce(law, w);
+  const T step = (goal - w - h * creep.force) / (1.0 + h * creep.slope);
+  return Clamp(w + step, lowest, goal);
+}
+
+/// Whether a wheelset needs another iteration: its iterate has moved by more than a thousandth of itself.
+template <class T>
+MaskOf<T> IsOnTheWay(const T& w, const T& next) {
+  return Abs(next - w) > 1e-3 * next;
+}
+
+/// Solves w + h F(w) = w0 by Newton's method, from a guess of w.
 ///
-/// F rises from 0 to at most N mu0 and its slope falls, so that w lies above both w0 / (1 + h F'(0)) and w0 -
-/// h N mu0: from the larger bound Newton's iterates climb monotonically. (With friction that falls over the
-/// slip speed the slope may turn negative, h |F'| < 0.1: the iterates are held between the bounds.) Three of
-/// them leave an error in F of 1e-6 N mu0 while less than half of the friction is in use, 3e-4 N mu0 up to
-/// three quarters, and at most 1.6 % of N mu0 close to full sliding below 2 m/s, always towards too much
-/// force. The force returned is (w0 - w) / h: whatever error is left in w, momentum and energy are exact.
+/// F rises from 0 to at most N mu0 and its slope falls: w lies above w0 - h N mu0, and Newton's iterates, whatever the
+/// guess, do not pass it. They climb, held at or above that bound and 0. (With friction that falls over the slip speed
+/// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has arrived when its iterate
+/// moved by less than a thousandth of itself: by Taylor's theorem F is then wrong by w^2 F'' 1e-6 / 2, less than 1e-6 N
+/// mu0, towards too much force (or by 1e-8 N mu0 towards too little, where friction falls). From the slip of the step
+/// before, that takes a rolling wheelset one iteration, seldom two. The force returned is (w0 - w) / h: whatever error is
+/// left in w, momentum and energy are exact.
 ///
-/// Several wheelsets are solved side by side: an iteration waits for the one before, but not for those of the
-/// others.
+/// Several wheelsets are solved side by side, in each lane of T too: an iteration waits for the one before, but not for
+/// those of the others. One that has arrived stays where it is while others go on, so that its result does not depend
+/// on them.
+/// @param guess  of w, with its sign; it decides how soon w is found
 template <class T, std::size_t kCount, class P = double>
 std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T, P>, kCount>& law,
-                                              const std::array<T, kCount>& h,
-                                              const std::array<T, kCount>& w0) {
-  constexpr double kTwoOverPi = 0.63661977236758134308;
-  constexpr int kIterations = 3;
+                                              const std::array<T, kCount>& h, const std::array<T, kCount>& w0,
+                                              const std::array<T, kCount>& guess) {
+  constexpr int kMostIterations = 12;  // a bound on the time; from w = 0, seven were the most seen
   std::array<T, kCount> goal, lowest, w;
   for (std::size_t i = 0; i < kCount; ++i) {
     goal[i] = Abs(w0[i]);
-    const T small_slip_slope = (kTwoOverPi * (law[i].adhesion_reduction + law[i].slip_reduction)) *
-                               law[i].friction_limit * law[i].steepness;
     lowest[i] = Max(T(0.0), goal[i] - h[i] * law[i].friction_limit);
-    w[i] = Max(lowest[i], goal[i] / (1.0 + h[i] * small_slip_slope));
+    w[i] = Clamp(Abs(guess[i]), lowest[i], goal[i]);
   }
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  const auto iterate = [&] {  // a loop by itself: the compiler writes only short ones out
+    std::array<T, kCount> next;
+    for (std::size_t i = 0; i < kCount; ++i) next[i] = NextSlip(law[i], h[i], goal[i], lowest[i], w[i]);
+    return next;
+  };
+  std::array<T, kCount> next = iterate();
+  std::array<MaskOf<T>, kCount> on_the_way;
+  MaskOf<T> any = T(0.0) != T(0.0);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    on_the_way[i] = IsOnTheWay(w[i], next[i]);
+    any = any | on_the_way[i];
+    w[i] = next[i];
+  }
+  for (int iteration = 1; AnyOf(any) && iteration < kMostIterations; ++iteration) {
+    next = iterate();
+    any = T(0.0) != T(0.0);
     for (std::size_t i = 0; i < kCount; ++i) {
-      const CreepForce<T> creep = PolachForce(law[i], w[i]);
-      const T step = (goal[i] - w[i] - h[i] * creep.force) / (1.0 + h[i] * creep.slope);
-      w[i] = Clamp(w[i] + step, lowest[i], goal[i]);
+      const MaskOf<T> goes_on = on_the_way[i] & IsOnTheWay(w[i], next[i]);
+      w[i] = Select(on_the_way[i], next[i], w[i]);
+      on_the_way[i] = goes_on;
+      any = any | goes_on;
     }
   }
   std::array<SlipSolution<T>, kCount> solution;
@@ -89,8 +120,8 @@ std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T, P>, k
 }
 
 template <class T>
-SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0) {
-  return SolveSlip<T, 1>({law}, {h}, {w0})[0];
+SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0, T guess) {
+  return SolveSlip<T, 1>({law}, {h}, {w0}, {guess})[0];
 }
 
 /// One implicit step of the slip of wheelsets, with set-valued braking.
@@ -112,22 +143,22 @@ std::array<RollingResult<T>, kCount> StepRolling(const Inertia& inertia,
   const double r = inertia.radius_m;
   const double h_locked = dt * inertia.inv_mass_per_kg;
 
-  std::array<T, kCount>
-      stopping;  // torque that would stop the wheels within this step, the creep force aside
-  std::array<T, kCount> torque, h;
+  // stopping: the torque that would stop the wheels within this step, the creep force aside.
+  std::array<T, kCount> stopping, torque, h, slip;
   std::array<MaskOf<T>, kCount> locked;
   bool any_locked = false;
   for (std::size_t i = 0; i < kCount; ++i) {
     stopping[i] = in[i].spin * (1.0 / (dt * inertia.InvInertia(i))) + in[i].traction_torque;
     torque[i] = CopySign(in[i].brake_torque, stopping[i]);
     h[i] = T(dt * (inertia.inv_mass_per_kg + r * r * inertia.InvInertia(i)));
+    slip[i] = in[i].slip;
     locked[i] = Abs(stopping[i]) <= in[i].holding_torque + r * law[i].friction_limit;
     any_locked |= AnyOf(locked[i]);
   }
   if (any_locked) {  // may stop: find the torque that holds omega1 = 0 and see whether the brake has it
     std::array<T, kCount> speed, h_if_locked;
     for (std::size_t i = 0; i < kCount; ++i) speed[i] = in[i].speed, h_if_locked[i] = T(h_locked);
-    const std::array<SlipSolution<T>, kCount> sliding = SolveSlip(law, h_if_locked, speed);
+    const std::array<SlipSolution<T>, kCount> sliding = SolveSlip(law, h_if_locked, speed, slip);
     for (std::size_t i = 0; i < kCount; ++i) {
       const T most = in[i].brake_torque, holding = stopping[i] + r * sliding[i].force;
       torque[i] = Select(locked[i], Clamp(holding, -most, most), torque[i]);
@@ -141,7 +172,7 @@ std::array<RollingResult<T>, kCount> StepRolling(const Inertia& inertia,
     free_spin[i] = Select(locked[i], T(0.0), turning_spin);
     free_slip[i] = in[i].speed - r * free_spin[i];
   }
-  const std::array<SlipSolution<T>, kCount> solution = SolveSlip(law, h, free_slip);
+  const std::array<SlipSolution<T>, kCount> solution = SolveSlip(law, h, free_slip, slip);
   std::array<RollingResult<T>, kCount> out;
   for (std::size_t i = 0; i < kCount; ++i) {
     const T force = solution[i].force;

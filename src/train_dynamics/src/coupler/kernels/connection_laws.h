@@ -20,8 +20,8 @@ typename Law::template Memory<T> LoadMemory(const ConnectionArrays& at, int i) {
 }
 
 template <class T, class Law>
-[[gnu::flatten]] void ConnectionForces(const Law& type, double prediction_s, double time_s,
-                                       const ConnectionArrays& at) {
+TRAIN_DYNAMICS_FLATTEN void ConnectionForces(const Law& type, double prediction_s, double time_s,
+                                             const ConnectionArrays& at) {
   const Law law = type;  // a copy that no store can change: its numbers stay in registers
   for (int i = 0; i < at.count; i += kLanesOf<T>) {
     typename Law::template Memory<T> memory = LoadMemory<T, Law>(at, i);
@@ -55,7 +55,8 @@ template <class T, class Law>
 }
 
 template <class T, class Law>
-[[gnu::flatten]] void ConnectionWork(const Law& type, const double* extension_m, const ConnectionArrays& at) {
+TRAIN_DYNAMICS_FLATTEN void ConnectionWork(const Law& type, const double* extension_m,
+                                           const ConnectionArrays& at) {
   const Law law = type;
   for (int i = 0; i < at.count; i += kLanesOf<T>) {
     const T end = Load<T>(extension_m + i);

@@ -20,23 +20,24 @@ void WithStride(int stride, const Loop& loop) {
 }
 
 template <class T>
-[[gnu::flatten]] void Differences(int count, int stride, const double* __restrict x,
-                                  double* __restrict difference) {
+TRAIN_DYNAMICS_FLATTEN void Differences(int count, int stride, const double* __restrict x,
+                                        double* __restrict difference) {
   WithStride<T>(stride, [=](auto by) {
     for (int i = 0; i < count; ++i) difference[i] = x[i * by] - x[i * by + 1];
   });
 }
 
 template <class T>
-[[gnu::flatten]] void OffsetDifferences(int count, int stride, const double* __restrict x,
-                                        const double* __restrict offset, double* __restrict sum) {
+TRAIN_DYNAMICS_FLATTEN void OffsetDifferences(int count, int stride, const double* __restrict x,
+                                              const double* __restrict offset, double* __restrict sum) {
   WithStride<T>(stride, [=](auto by) {
     for (int i = 0; i < count; ++i) sum[i] = offset[i] + (x[i * by] - x[i * by + 1]);
   });
 }
 
 template <class T>
-[[gnu::flatten]] void Spread(int count, int stride, const double* __restrict from, double* __restrict to) {
+TRAIN_DYNAMICS_FLATTEN void Spread(int count, int stride, const double* __restrict from,
+                                   double* __restrict to) {
   WithStride<T>(stride, [=](auto by) {
     for (int i = 0; i < count; ++i) to[i * by] = from[i];
   });

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <type_traits>
-
 #include "train_dynamics/numeric/lanes.h"
 #include "train_dynamics/vehicle/lane_kernels.h"
 #include "train_dynamics/vehicle/wagon_step.h"
@@ -12,14 +10,15 @@
 namespace train_dynamics {
 
 template <bool kAll, bool kReacts, class T, int kPerBogie>
-void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
-          WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
-  StepWagonWith<kAll, kReacts>(wagon, track, loads, dt, state, output);
+void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const OneSurface& surface,
+          const VehicleLoads<T>& loads, double dt, WagonState<T, kPerBogie>& state,
+          WagonOutput<T, kPerBogie>* output) {
+  StepWagonWith<kAll, kReacts>(wagon, track, surface, loads, dt, state, output);
 }
 
 template <bool kAll, bool kReacts, class T>
-void Step(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
-          LtdState<T>& state, LtdOutput<T>* output) {
+void Step(const LtdVehicle& vehicle, const Track& track, const OneSurface& /*surface*/,
+          const VehicleLoads<T>& loads, double dt, LtdState<T>& state, LtdOutput<T>* output) {
   StepLtdWith<kAll>(vehicle, track, loads, dt, state, output);
 }
 
@@ -43,12 +42,6 @@ void StoreNumbers(const std::array<T, n>& values, double* place) {
     Store(values[i], lanes);
     for (int lane = 0; lane < kLanesOf<T>; ++lane) place[lane * n + i] = lanes[lane];
   }
-}
-
-/// Whether a vehicle and its track have only what the paper's have.
-template <int kPerBogie>
-bool IsPlain(const BogieVehicle<kPerBogie>& wagon, const Track& track) {
-  return wagon.IsPlain() && track.IsPlain();
 }
 
 /// Whether a load that few trains have is given.
@@ -80,19 +73,26 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
   return loads;
 }
 
+/// Packs of a batch, [begin, end).
+struct Packs {
+  int begin, end;
+};
+
 /// @tparam kAll  with the loads that few trains have, and with what a plain vehicle or a plain track does not have
 /// @tparam kReacts  see StepWagonWith
+/// @param surface  see StepWagonWith
 template <class T, bool kAll, bool kReacts, class Vehicle>
-[[gnu::flatten]] bool StepPacksUnder(const Vehicle& vehicle, const Track& track, double dt, int steps,
-                                     int packs, const LoadPlaces& load_places,
-                                     const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
+TRAIN_DYNAMICS_FLATTEN bool StepPacksUnder(const Vehicle& vehicle, const Track& track,
+                                           const OneSurface& surface, double dt, int steps, Packs packs,
+                                           const LoadPlaces& load_places, const ReplyPlaces& reply_places,
+                                           std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
   static_assert(sizeof(State) == kLanesOf<T> * sizeof(typename Vehicle::template State<double>) &&
                     sizeof(Output) == kLanesOf<T> * sizeof(typename Vehicle::template Output<double>),
                 "a pack lies in memory as [field][lane]");
   MaskOf<T> sound = T(0.0) == T(0.0);
-  for (int i = 0; i < packs; ++i) {
+  for (int i = packs.begin; i < packs.end; ++i) {
     const int first = i * kLanesOf<T>;
     State& pack = reinterpret_cast<State*>(states)[i];
     Output* output = outputs == nullptr ? nullptr : reinterpret_cast<Output*>(outputs) + i;
@@ -110,9 +110,9 @@ template <class T, bool kAll, bool kReacts, class Vehicle>
       take(load_places.traction_share, traction_share, loads.traction_share);
     }
     for (int step = 1; step < steps; ++step) {
-      Step<kAll, kReacts>(vehicle, track, loads, dt, pack, static_cast<Output*>(nullptr));
+      Step<kAll, kReacts>(vehicle, track, surface, loads, dt, pack, static_cast<Output*>(nullptr));
     }
-    Step<kAll, kReacts>(vehicle, track, loads, dt, pack, output);
+    Step<kAll, kReacts>(vehicle, track, surface, loads, dt, pack, output);
     const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
     ForEachReplyField([first](const RecordInfo& field, const auto& value,
                               double* place) { StoreNumbers(value, place + first * field.numbers); },
@@ -125,25 +125,56 @@ template <class T, bool kAll, bool kReacts, class Vehicle>
 /// The same, told that no store changes vehicle or track: what is constant in an LTD vehicle stays in registers. A wagon has
 /// too much of it, which would push its state out.
 template <class T, bool kAll>
-[[gnu::flatten]] bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track,
-                                   double dt, int steps, int packs, const LoadPlaces& loads,
-                                   const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
-  return StepPacksUnder<T, kAll, kAll>(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+TRAIN_DYNAMICS_FLATTEN bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track,
+                                         double dt, int steps, Packs packs, const LoadPlaces& loads,
+                                         const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+  return StepPacksUnder<T, kAll, kAll>(vehicle, track, {}, dt, steps, packs, loads, reply, states, outputs);
 }
 
-template <class T, class Vehicle>
-bool StepPacks(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
+/// Plain vehicles on a track with dips or patches: pack by pack and step by step, a pack on one surface and no dip takes
+/// the step without look-ups.
+template <class T, int kPerBogie>
+bool StepPacksOnAnyTrack(const BogieVehicle<kPerBogie>& vehicle, const Track& track, double dt, int steps,
+                         int packs, const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states,
+                         std::byte* outputs) {
+  using Vehicle = BogieVehicle<kPerBogie>;
+  const auto on_one_surface =
+      Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle> : &StepPacksUnder<T, false, false, Vehicle>;
+  bool sound = true;
+  for (int i = 0; i < packs; ++i) {
+    const auto& pack = reinterpret_cast<const WagonState<T, kPerBogie>*>(states)[i];
+    for (int step = 1; step <= steps; ++step) {
+      OneSurface surface;
+      const auto advance = FindOneSurface(vehicle, track, dt, pack, surface)
+                               ? on_one_surface
+                               : &StepPacksUnder<T, true, true, Vehicle>;
+      sound &= advance(vehicle, track, surface, dt, 1, {i, i + 1}, loads, reply, states,
+                       step == steps ? outputs : nullptr);
+    }
+  }
+  return sound;
+}
+
+template <class T>
+bool StepPacks(const LtdVehicle& vehicle, const Track& track, double dt, int steps, int packs,
                const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
   const bool all = HasRareLoads<T>(loads) || !IsPlain(vehicle, track);
-  if constexpr (std::is_same_v<Vehicle, LtdVehicle>) {
-    const auto step = all ? &StepLtdPacks<T, true> : &StepLtdPacks<T, false>;
-    return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
-  } else {
-    const auto step = all               ? &StepPacksUnder<T, true, true, Vehicle>
-                      : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
-                                        : &StepPacksUnder<T, false, false, Vehicle>;
-    return step(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
-  }
+  const auto step = all ? &StepLtdPacks<T, true> : &StepLtdPacks<T, false>;
+  return step(vehicle, track, dt, steps, {0, packs}, loads, reply, states, outputs);
+}
+
+template <class T, int kPerBogie>
+bool StepPacks(const BogieVehicle<kPerBogie>& vehicle, const Track& track, double dt, int steps, int packs,
+               const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+  using Vehicle = BogieVehicle<kPerBogie>;
+  const bool all = HasRareLoads<T>(loads) || !vehicle.IsPlain();
+  if (!all && !track.IsPlain())
+    return StepPacksOnAnyTrack<T>(vehicle, track, dt, steps, packs, loads, reply, states, outputs);
+  const auto step = all               ? &StepPacksUnder<T, true, true, Vehicle>
+                    : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
+                                      : &StepPacksUnder<T, false, false, Vehicle>;
+  return step(vehicle, track, OwnSurface<T>(vehicle.params.wheel_rail.adhesion), dt, steps, {0, packs}, loads,
+              reply, states, outputs);
 }
 
 template <class T, class Vehicle>
@@ -165,9 +196,9 @@ constexpr LaneKernels KernelsOver(const char* instruction_set) {
   LaneKernels kernels{};
   kernels.instruction_set = instruction_set;
   kernels.lanes = kLanesOf<T>;
-  kernels.step_wagons = &StepPacks<T, Wagon>;
-  kernels.step_six_axle = &StepPacks<T, SixAxleVehicle>;
-  kernels.step_ltd = &StepPacks<T, LtdVehicle>;
+  kernels.step_wagons = &StepPacks<T, 2>;
+  kernels.step_six_axle = &StepPacks<T, 3>;
+  kernels.step_ltd = &StepPacks<T>;
   kernels.record_wagons = &RecordPack<T, Wagon>;
   kernels.record_six_axle = &RecordPack<T, SixAxleVehicle>;
   kernels.record_ltd = &RecordPack<T, LtdVehicle>;
