@@ -1,6 +1,5 @@
 #include "train_results/summary_text.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,8 +8,6 @@ namespace train_results {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
 
 /// Of a train of three vehicles that still moves when its time is over.
 json Moving() {
@@ -39,14 +36,16 @@ std::string Text(const json& summary) { return SummaryText(summary.dump()); }
 
 TEST(SummaryText, MovingTrain) {
   const std::string text = Text(Moving());
-  EXPECT_THAT(
-      text,
-      HasSubstr(
-          "mine: 3 vehicles, ltd model, ends after 60.0 s and 1234.6 m at 7.2 km/h\n  (duration_s is over;"));
-  EXPECT_THAT(text, HasSubstr("largest tension 123 kN in connection 1 at 3.2 s, "
-                              "largest compression 65 kN in connection 2 at 4.5 s\n"));
+  EXPECT_PRED_FORMAT2(
+      testing::IsSubstring,
+      "mine: 3 vehicles, ltd model, ends after 60.0 s and 1234.6 m at 7.2 km/h\n  (duration_s is over;",
+      text);
+  EXPECT_PRED_FORMAT2(testing::IsSubstring,
+                      "largest tension 123 kN in connection 1 at 3.2 s, "
+                      "largest compression 65 kN in connection 2 at 4.5 s\n",
+                      text);
   for (const char* absent : {"slid", "parted", "rolled back", "route", "INCOMPLETE", "faster"})
-    EXPECT_THAT(text, Not(HasSubstr(absent)));
+    EXPECT_PRED_FORMAT2(testing::IsNotSubstring, absent, text);
 }
 
 TEST(SummaryText, StandingTrain) {
@@ -54,8 +53,8 @@ TEST(SummaryText, StandingTrain) {
   summary.update(
       {{"stopped", true}, {"ended_by", "until"}, {"stop_time_s", 58.5}, {"stop_distance_m", 987.6}});
   const std::string text = Text(summary);
-  EXPECT_THAT(text, HasSubstr("stands after 58.5 s and 987.6 m\n"));
-  EXPECT_THAT(text, Not(HasSubstr("duration_s")));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "stands after 58.5 s and 987.6 m\n", text);
+  EXPECT_PRED_FORMAT2(testing::IsNotSubstring, "duration_s", text);
 }
 
 TEST(SummaryText, TellsWhatShouldNotHappen) {
@@ -75,11 +74,11 @@ TEST(SummaryText, TellsWhatShouldNotHappen) {
         "  it rolled back, at the end by 2.5 m\n", "  it left its route at 12.0 s\n",
         "  2 wheelsets slid, 5 slides in all, with a risk of a flat on 1\n",
         "  INCOMPLETE: vehicle 1: burst\n"}) {
-    EXPECT_THAT(text, HasSubstr(line));
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, line, text);
   }
-  EXPECT_THAT(text, Not(HasSubstr("duration_s")));
+  EXPECT_PRED_FORMAT2(testing::IsNotSubstring, "duration_s", text);
   summary["fault"] = nullptr;
-  EXPECT_THAT(Text(summary), HasSubstr("INCOMPLETE: the run was stopped\n"));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "INCOMPLETE: the run was stopped\n", Text(summary));
 }
 
 TEST(SummaryText, TellsHowFarATwinWent) {
@@ -88,7 +87,8 @@ TEST(SummaryText, TellsHowFarATwinWent) {
                      {"max_tension_spread_n", 3.0},
                      {"max_compression_spread_n", 40.0},
                      {"distance_spread_m", 0.5}};
-  EXPECT_THAT(Text(summary), HasSubstr("a start 1e-09 km/h faster changes the largest forces by up to 40 N"));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring,
+                      "a start 1e-09 km/h faster changes the largest forces by up to 40 N", Text(summary));
 }
 
 TEST(SummaryText, LeavesOutWhatIsNotThere) {
@@ -98,8 +98,8 @@ TEST(SummaryText, LeavesOutWhatIsNotThere) {
   summary["max_tension_n"] = nullptr;
   summary["max_compression_n"]["value"] = nullptr;
   summary["final_speed_kmh"]["mean"] = nullptr;
-  EXPECT_THAT(Text(summary), HasSubstr("ends after 60.0 s\n"));
-  EXPECT_THAT(Text(summary), Not(HasSubstr("largest")));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "ends after 60.0 s\n", Text(summary));
+  EXPECT_PRED_FORMAT2(testing::IsNotSubstring, "largest", Text(summary));
 }
 
 TEST(SummaryText, RefusesWhatIsNoSummary) {
