@@ -365,9 +365,10 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
                   v0.x[b] - r * v0.pitch[b]};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
-      mixed ? RollOnMixed(w, rail, rolling, dt, v0)
-            : RollOn(w, rail, rolling, dt, v0, w.rolling,
-                     [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
+      mixed
+          ? RollOnMixed(w, rail, rolling, dt, v0)
+          : RollOn(w, rail, rolling, dt, v0, w.rolling,
+                   [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
 
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
