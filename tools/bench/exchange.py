@@ -95,11 +95,11 @@ def _in_turn(ranks, launches, mpi):
     """Results of all launches and of MPI, in turn.
 
     To start and end hundreds of processes takes most of the time: of many ranks only the first way is measured beside
-    MPI, in turn and more often, because MPI's times scatter then; the others once.
+    MPI, in turn; the others once.
     """
     if ranks < MANY_RANKS:
         return measure.in_turn(2, *launches, mpi)
-    first, of_mpi = measure.in_turn(3, launches[0], mpi)
+    first, of_mpi = measure.in_turn(2, launches[0], mpi)
     return [first, *measure.in_turn(1, *launches[1:]), of_mpi]
 
 

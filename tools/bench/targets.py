@@ -62,7 +62,24 @@ carries every message through the network's layers on loopback: three system cal
 the master, against one through shared memory ({exchange.shared_memory_cpu_us} us)."""
 SPREAD = """an exchange costs about {scaling.{model}_fixed_us} us however short the train is, and 50 vehicles fill
 {scaling.lanes_of_the_last_pack} of the {scaling.lanes} lanes of their last pack, which takes as long as a full one."""
+WHOLE_STEP = """a 2D run is its vehicles: creep and slip take {vehicles.creep_share %} of a wagon's step, the
+transformations between bodies and elements most of the rest ([table](#one-vehicle)), and its instructions alone
+{limit.issue_share %} of the time ([below](#how-far-from-the-machines-limit)). Beside them recording adds
+{runs.2d_1_recording_cpu %} of CPU time on one thread, {runs.2d_{cores}_recording %} of wall time on all cores."""
 REASONS = {
+    "minutes": """nearly all of it are the launches of up to 242 processes, which take longer to start and to end than to
+run ([table](#ranks-and-mpi)).""",
+    "2d_bag": WHOLE_STEP,
+    "2d_1_wall_s": WHOLE_STEP,
+    "2d_{cores}_wall_s": WHOLE_STEP,
+    "ltd_bag": """without its bag the run has become faster (below); with it, the recorder's thread, {vehicles.bag_us} us for
+each record, and the kernel's copies into its page cache are as long as the run, and have not changed.""",
+    "ranks_wall_s": """{graph.overhead_ms} ms of each exchange are waking up; the rest is the wagons' own time, on cores of which one
+has the master and the recorder besides.""",
+    "every_vehicle_wall_s": RANKS,
+    "patches_ns": """wagons that stand on two surfaces, or within a ramp, look up each wheel's surface and solve the slip with
+a law of its own for each lane; the first patch of this train ends 50 m before its first vehicle, so that the packs at its
+end do so all the time.""",
     "ltd_1_wall_s": """couplers take {vehicles.ltd_share_of_couplers %} of an exchange, the vehicles themselves
 {vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and two
 divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
