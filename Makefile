@@ -92,7 +92,7 @@ test-sanitize: deps-test ## the same with the address and undefined-behaviour sa
 same_digests = . $(1)/setup.bash && PATH=/usr/bin:$$PATH src/train_sim/test/digests_test.py $(1)/lib/train_sim/train_sim config
 
 .PHONY: test-sanitize-short
-test-sanitize-short: deps ## train_sim alone with these sanitizers: every shipped scenario for a second, to the same bits
+test-sanitize-short: deps ## train_sim alone with these sanitizers: every shipped scenario, to the same bits
 	@$(sanitize) train_sim $(quietly)
 	@$(call same_digests,devel_sanitize)
 

@@ -23,7 +23,9 @@ class StepInParts {
   }
 
   /// Wheel-rail forces in the normal direction.
-  void Contact() { rail_ = ContactForces<false>(*wagon_, *track_, s_); }
+  void Contact() {
+    rail_ = ContactForces<false>(*wagon_, *track_, OwnSurface<T>(wagon_->params.wheel_rail.adhesion), s_);
+  }
 
   /// Springs and dampers, centre plates' rims and the wedges' springs.
   void Suspension() {

@@ -115,7 +115,7 @@ TEST(SixAxleStatics, EveryWheelsetCarriesASixth) {
   for (const VehicleParams& p : {WithWedges(), WithDampers()}) {
     const SixAxleVehicle w(p);
     const auto s = StaticEquilibrium(w, 0.0, 20.0);
-    const auto rail = ContactForces<true>(w, Track(), s);
+    const auto rail = ContactForces<true>(w, Track(), {}, s);
     for (int i = 0; i < kSixWheelsets; ++i) EXPECT_NEAR(rail.normal[i], w.weight_n / 6.0, 1e-9 * w.weight_n);
   }
   EXPECT_NEAR(SixAxleVehicle(WithDampers()).weight_n,
@@ -130,7 +130,7 @@ TEST(SixAxleStatics, AMiddleWheelsetOffTheCentreTakesItsShare) {
   const SixAxleVehicle w(p);
   const double d = 1.85, m = 0.3, wheelset_n = 9.81 * 1731.8;
   const double load = 0.5 * w.weight_n - 3.0 * wheelset_n;
-  const auto rail = ContactForces<true>(w, Track(), StaticEquilibrium(w, 0.0, 0.0));
+  const auto rail = ContactForces<true>(w, Track(), {}, StaticEquilibrium(w, 0.0, 0.0));
   const double front = rail.normal[0] - wheelset_n, middle = rail.normal[1] - wheelset_n,
                rear = rail.normal[2] - wheelset_n;
   EXPECT_NEAR(front + middle + rear, load, 1e-9 * w.weight_n);

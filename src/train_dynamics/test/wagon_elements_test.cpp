@@ -130,7 +130,7 @@ TEST(Elements, ElasticForcesAreTheSlopeOfThePotential) {
     }
     BodyVector<double> force{};
     AddElementForces(w, ElasticForces(w, ElementsOf(w, s.position)), force);
-    const RailForces<double> rail = ContactForces<true>(w, hump, s);
+    const RailForces<double> rail = ContactForces<true>(w, hump, {}, s);
     for (int i = 0; i < kBodies; ++i) force.z[i] -= kGravity * w.mass_kg[i];
     for (int i = 0; i < kWheelsets; ++i) {
       force.z[kWheelset1 + i] += rail.normal[i];
@@ -292,7 +292,7 @@ double NestDeflection(const VehicleParams& p) {
 TEST(StaticEquilibrium, CarriesAQuarterOfTheWeightOnEveryAxle) {
   const Wagon& w = PaperWagon();
   const WagonState<double> s = StaticEquilibrium(w, 0.0, 20.0);
-  const RailForces<double> rail = ContactForces<true>(w, TrackParams(), s);
+  const RailForces<double> rail = ContactForces<true>(w, TrackParams(), {}, s);
   for (int i = 0; i < kWheelsets; ++i) EXPECT_NEAR(rail.normal[i], 0.25 * w.weight_n, 1e-9 * w.weight_n);
   EXPECT_NEAR(w.weight_n, 9.81 * 160113.8, 1e-6);
 }
