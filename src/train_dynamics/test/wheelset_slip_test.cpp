@@ -65,9 +65,11 @@ TEST(SolveSlip, MeetsTheImplicitEquation) {
                  {0.0, slip, 0.9995 * slip, 1.03 * slip, 0.5 * slip, 2.0 * slip, -w0, 1e3}) {
               const SlipSolution<double> s = SolveSlip(law, h, w0, guess);
               const double error = (s.force - exact) / law.friction_limit;
-              // Too much force, hardly ever too little, so that the error damps the slip.
+              // Too much force, so that the error damps the slip; too little only where friction falls, by w^2 F'' 1e-6
+              // / 2 at most, with x^2 e^-x <= 0.542.
               EXPECT_LT(error, 1e-6) << name << speed << " " << w0 << " " << guess;
-              EXPECT_GT(error, -1e-8) << name << speed << " " << w0 << " " << guess;
+              EXPECT_GT(error, -1e-9 - 0.271e-6 * (1.0 - rail.friction_ratio))
+                  << name << speed << " " << w0 << " " << guess;
               EXPECT_LE(s.force,
                         law.friction_limit * (1.0 + 1e-12));  // 1e-12: s.force is a difference over h
               EXPECT_GE(s.slip, 0.0);

@@ -70,9 +70,9 @@ MaskOf<T> IsOnTheWay(const T& w, const T& next) {
 /// guess, do not pass it. They climb, held at or above that bound and 0. (With friction that falls over the slip speed
 /// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has arrived when its iterate
 /// moved by less than a thousandth of itself: by Taylor's theorem F is then wrong by w^2 F'' 1e-6 / 2, less than 1e-6 N
-/// mu0, towards too much force (or by 1e-8 N mu0 towards too little, where friction falls). From the slip of the step
-/// before, that takes a rolling wheelset one iteration, seldom two. The force returned is (w0 - w) / h: whatever error is
-/// left in w, momentum and energy are exact.
+/// mu0, towards too much force (or, where friction falls, by up to 2.7e-7 (1 - A) N mu0 towards too little). From the
+/// slip of the step before, that takes a rolling wheelset one iteration, seldom two. The force returned is (w0 - w) / h:
+/// whatever error is left in w, momentum and energy are exact.
 ///
 /// Several wheelsets are solved side by side, in each lane of T too: an iteration waits for the one before, but not for
 /// those of the others. One that has arrived stays where it is while others go on, so that its result does not depend
