@@ -141,10 +141,10 @@ class BenchTools(unittest.TestCase):
         ), mock.patch.object(exchange, "PROFILES", [("shared memory", 2, 1), ("MPI", 2, 1)]):
             tables, facts = exchange.run()
         rows = {row[0]: row[1:] for row in tables[0].rows}
-        self.assertEqual(("0.75 x", "0.25 x"), rows["shared memory to MPI"])
-        self.assertEqual(("0.5 ... 1", "0.2 ... 0.333"), rows["from ... to"])
-        self.assertEqual(("0.75 x", "0.25 x"), rows["TCP to MPI"])
-        self.assertAlmostEqual(0.25, facts["to_mpi_242"])
+        self.assertEqual(("0.75 x", "0.292 x"), rows["shared memory to MPI"])
+        self.assertEqual(("0.5 ... 1", "0.25 ... 0.333"), rows["from ... to"])
+        self.assertEqual(("0.75 x", "0.286 x"), rows["TCP to MPI"])
+        self.assertAlmostEqual((1 / 3 + 1 / 4) / 2, facts["to_mpi_242"])
         self.assertEqual(["shared memory, 2 ranks", "MPI, 2 ranks"], [row[0] for row in tables[2].rows])
         with mock.patch.multiple(workspace, Launch=Launch, mpi_train=lambda *_: None), mock.patch.object(
             exchange, "PROFILES", [("MPI", 2, 1)]
