@@ -102,7 +102,9 @@ def main() -> int:
         try:
             tension = {model: numpy.array([job.result() for job in of]) for model, of in jobs.items()}
         except subprocess.CalledProcessError as error:
-            pool.shutdown(cancel_futures=True)
+            for of in jobs.values():
+                for job in of:
+                    job.cancel()
             print(f"paper_lugre: {' '.join(error.cmd)} failed:\n{error.stderr.decode()}", file=sys.stderr)
             return 1
     difference = tension["2d"] - tension["ltd"]

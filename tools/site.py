@@ -30,7 +30,8 @@ def copy_pages():
 
 def resolves(page, link):
     target = re.search(r"\(([^)#]+)", link)[1]
-    return (page.parent / target).resolve().is_relative_to(COPY) and (page.parent / target).exists()
+    file = (page.parent / target).resolve()
+    return COPY in (file, *file.parents) and file.exists()
 
 
 def main():

@@ -28,7 +28,7 @@ class Run:
             with _ended_after(process, timeout_s):
                 _, status, usage = os.wait4(process.pid, 0)
             self.wall_s = time.monotonic() - begin
-            process.returncode = os.waitstatus_to_exitcode(status)
+            process.returncode = os.WEXITSTATUS(status) if os.WIFEXITED(status) else -os.WTERMSIG(status)
             self.cpu_s = usage.ru_utime + usage.ru_stime
             out.seek(0)
             err.seek(0)
