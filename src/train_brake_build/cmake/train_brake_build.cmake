@@ -11,6 +11,12 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type: Release, RelWithDebInfo or Debug" FORCE)
 endif()
 
+# std::from_chars and std::to_chars for double, __builtin_bit_cast: GCC has them since version 11.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 11)
+  message(FATAL_ERROR "${CMAKE_CXX_COMPILER} is GCC ${CMAKE_CXX_COMPILER_VERSION}; train_brake needs GCC 11 or newer. "
+    "Choose another compiler by -DCMAKE_CXX_COMPILER=PATH in a new build folder.")
+endif()
+
 option(TRAIN_BRAKE_WARNINGS_AS_ERRORS "Stop at compiler warnings" ON)
 set(TRAIN_BRAKE_SANITIZE "" CACHE STRING "Sanitizers: empty, \"address,undefined\" or \"thread\"")
 option(TRAIN_BRAKE_FUZZ "Build the fuzz targets as fuzzers, not as tests (needs clang)" OFF)
