@@ -8,7 +8,7 @@ program=devel/lib/train_sim/train_sim
 $program keys --markdown > docs/configuration.md
 rm -f config/schema/*.schema.json
 mkdir -p config/schema
-sed -n 's/^- \[\([a-z_]*\)\](#.*): .*/\1/p' docs/configuration.md | grep -v '^tables$' | while read -r kind; do
+$program keys --kinds | while read -r kind; do
   $program keys --json-schema "$kind" > "config/schema/$kind.schema.json"
 done
 $program keys --results > docs/result_files.md

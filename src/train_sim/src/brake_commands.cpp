@@ -12,7 +12,7 @@
 #include "train_dynamics/config/load_scenario.h"
 #include "train_dynamics/train/braked_weight.h"
 #include "train_dynamics/train/in_process_train.h"
-#include "train_dynamics/train/train_master.h"
+#include "train_run/train_run.h"
 #include "train_sim/run_command.h"
 
 namespace train_sim {
@@ -82,18 +82,19 @@ double StoppingDistance(ScenarioParams params, double speed_kmh) {
   params.ledger_interval_s = 600.0;
   const Consist consist(params.train);
   train_dynamics::InProcessTransport transport(params, consist, 1);
-  train_dynamics::TrainMaster master(params, consist, transport, MakeBrakeSystem(params, consist));
-  double begin_m = 0.0, end_m = 0.0;
+  train_run::TrainRun run(params, consist, transport, MakeBrakeSystem(params, consist));
+  double distance_m = 0.0;
   bool stands = false;
-  master.AddObserver([&](const train_dynamics::TrainRecord& record) {
-    if (record.exchange == 0) begin_m = record.mean_position_m;
-    end_m = record.mean_position_m;
+  run.AddObserver([&](const train_dynamics::TrainRecord& record) {
+    distance_m = record.mean_position_m - record.at_time_zero.mean_position_m;
     stands = record.exchange > 0 && record.mean_speed_mps < 0.01;
   });
-  master.Start();
-  while (!master.Done() && !stands) master.Exchange();
+  train_run::RunHooks hooks;
+  hooks.ends = [&stands] { return stands; };
+  run.Go(hooks);
+  if (!run.fault().empty()) throw std::runtime_error(run.fault());
   if (!stands) throw std::invalid_argument("does not stop within 600 s: is its brake too weak?");
-  return end_m - begin_m;
+  return distance_m;
 }
 
 /// One vehicle of the last group, with its brake.

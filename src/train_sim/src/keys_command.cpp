@@ -309,6 +309,11 @@ int PrintKeys(const KeysOptions& options) {
     PrintResultFiles();
     return train_run::kSuccess;
   }
+  if (options.kinds) {
+    for (const FileKind& kind : train_dynamics::config::ConfigurationKeys())
+      train_console::Print("{}\n", kind.name);
+    return train_run::kSuccess;
+  }
   if (!options.schema_kind.empty()) {
     const std::vector<FileKind> kinds = train_dynamics::config::ConfigurationKeys();
     std::vector<std::string> names;

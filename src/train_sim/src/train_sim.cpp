@@ -205,6 +205,7 @@ int Main(int argc, char** argv) {
       ->excludes(markdown);
   show_keys->add_flag("--results", keys.results, "print docs/result_files.md: what a run leaves")
       ->excludes(markdown);
+  show_keys->add_flag("--kinds", keys.kinds, "print the kinds of files, one per line")->excludes(markdown);
   show_keys->callback([&] { command = [&] { return train_sim::PrintKeys(keys); }; });
 
   std::string folder;
@@ -243,9 +244,17 @@ int Main(int argc, char** argv) {
   CLI::App* modes =
       app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
   AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
-  modes->add_flag("--csv", table, "comma-separated, with the shapes");
-  modes->callback(
-      [&] { command = [&] { return train_sim::PrintModes(vehicle, options.overrides, table); }; });
+  CLI::Option* with_shapes = modes->add_flag("--csv", table, "comma-separated, with the shapes");
+  modes->add_flag("--json", options.json, "print one JSON object for programs")->excludes(with_shapes);
+  modes->callback([&] {
+    command = [&] {
+      using train_sim::ModesFormat;
+      const ModesFormat format = options.json ? ModesFormat::kJson
+                                 : table      ? ModesFormat::kCsv
+                                              : ModesFormat::kText;
+      return train_sim::PrintModes(vehicle, options.overrides, format);
+    };
+  });
 
   CLI::App* adhesion =
       app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");

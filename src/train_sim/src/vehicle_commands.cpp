@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "train_console/console.h"
 #include "train_dynamics/config/load_scenario.h"
@@ -16,10 +20,13 @@ namespace {
 using train_dynamics::WagonMode;
 using train_dynamics::WagonModes;
 
-/// The motions that carry most of a mode's kinetic energy, as "carbody z 98 %, front bolster z 1 %".
+/// A motion with its share in the kinetic energy of a mode: {0.98, "carbody z"}.
+using EnergyShare = std::pair<double, std::string>;
+
+/// The three motions that carry most of a mode's kinetic energy, without those below 1 %.
 template <int kPerBogie>
-std::string LargestMotions(const WagonMode<kPerBogie>& mode) {
-  std::vector<std::pair<double, std::string>> motions;
+std::vector<EnergyShare> LargestShares(const WagonMode<kPerBogie>& mode) {
+  std::vector<EnergyShare> motions;
   for (int b = 0; b < train_dynamics::kBodiesOf<kPerBogie>; ++b) {
     const std::string body = train_dynamics::kBodyNames[b];
     motions.emplace_back(mode.energy_share.x[b], body + " x");
@@ -27,15 +34,20 @@ std::string LargestMotions(const WagonMode<kPerBogie>& mode) {
     motions.emplace_back(mode.energy_share.pitch[b], body + " pitch");
   }
   std::partial_sort(motions.begin(), motions.begin() + 3, motions.end(), std::greater<>());
+  motions.resize(3);
+  while (!motions.empty() && motions.back().first < 0.01) motions.pop_back();
+  return motions;
+}
+
+/// "carbody z 98 %, front bolster z 1 %".
+std::string InWords(const std::vector<EnergyShare>& shares) {
   std::string text;
-  for (int i = 0; i < 3; ++i) {
-    if (motions[i].first < 0.01) break;
-    text += fmt::format("{}{} {:.0f} %", i > 0 ? ", " : "", motions[i].second, 100.0 * motions[i].first);
-  }
+  for (const auto& [share, motion] : shares)
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", motion, 100.0 * share);
   return text;
 }
 
-/// The whole shapes: largest component 1, metres and radians alike.
+/// The modes with their whole shapes: largest component 1, metres and radians alike.
 template <int kPerBogie>
 void PrintShapes(const WagonModes<kPerBogie>& analysis) {
   train_console::Print("mode,frequency_hz,damping_ratio");
@@ -63,19 +75,46 @@ void PrintTable(const train_dynamics::BogieVehicle<kPerBogie>& wagon, const Wago
   int number = 1;
   for (const WagonMode<kPerBogie>& mode : analysis.modes) {
     train_console::Print("{:>5} {:>12.3f} {:>8.2f}%   {}\n", number++, mode.frequency_hz,
-                         100.0 * mode.damping_ratio, LargestMotions(mode));
+                         100.0 * mode.damping_ratio, InWords(LargestShares(mode)));
   }
   train_console::Print("\nrigid-body motions: {} (travel, rotation of the wheelsets)\n",
                        analysis.rigid_body_modes);
   train_console::Print("largest stable explicit step: {:.3f} ms\n", 1e3 * analysis.largest_stable_step_s);
 }
 
+template <int kPerBogie>
+void PrintJson(const train_dynamics::BogieVehicle<kPerBogie>& wagon, const WagonModes<kPerBogie>& analysis) {
+  nlohmann::ordered_json modes = nlohmann::ordered_json::array();
+  for (const WagonMode<kPerBogie>& mode : analysis.modes) {
+    nlohmann::ordered_json shares = nlohmann::ordered_json::object();
+    for (const auto& [share, motion] : LargestShares(mode)) shares[motion] = share;
+    modes.push_back({{"frequency_hz", mode.frequency_hz},
+                     {"damping_ratio", mode.damping_ratio},
+                     {"largest_energy_shares", std::move(shares)}});
+  }
+  const nlohmann::ordered_json json = {{"vehicle", wagon.params.name},
+                                       {"mass_kg", wagon.params.TotalMass()},
+                                       {"rigid_body_modes", analysis.rigid_body_modes},
+                                       {"largest_stable_step_s", analysis.largest_stable_step_s},
+                                       {"modes", std::move(modes)}};
+  train_console::WriteOutput(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+                             "\n");
+}
+
 }  // namespace
 
-int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides, bool csv) {
-  const auto print = [csv](const auto& wagon) {
+int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides,
+               ModesFormat format) {
+  const auto print = [format](const auto& wagon) {
     const auto analysis = train_dynamics::AnalyseModes(wagon);
-    csv ? PrintShapes(analysis) : PrintTable(wagon, analysis);
+    switch (format) {
+      case ModesFormat::kText:
+        return PrintTable(wagon, analysis);
+      case ModesFormat::kCsv:
+        return PrintShapes(analysis);
+      case ModesFormat::kJson:
+        return PrintJson(wagon, analysis);
+    }
   };
   train_dynamics::WithBogieVehicle(train_dynamics::config::LoadVehicle(vehicle_file, overrides), print);
   return train_run::kSuccess;

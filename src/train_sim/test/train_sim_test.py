@@ -1138,6 +1138,21 @@ class TrainSimTest(unittest.TestCase):
         self.assertEqual(0, modes.returncode)
         self.assertRegex(modes.stdout, r"1 +2\.0\d+ .*carbody z 99 %")  # bounce, 2.04 Hz
         self.assertRegex(modes.stdout, r"largest stable explicit step: 1\.\d+ ms")
+        told = json.loads(train_sim("modes", wagon, "--json").stdout)
+        self.assertEqual(
+            "carbody z", max(told["modes"][0]["largest_energy_shares"].items(), key=lambda item: item[1])[0]
+        )
+        self.assertIn(f"{1e3 * told['largest_stable_step_s']:.3f} ms", modes.stdout)
+        for mode in told["modes"]:
+            self.assertIn(f"{mode['frequency_hz']:.3f}", modes.stdout)
+            shares = list(mode["largest_energy_shares"].values())
+            self.assertEqual(sorted(shares, reverse=True), shares)
+            self.assertLessEqual(sum(shares), 1.0 + 1e-9)
+        table = list(csv.DictReader(train_sim("modes", wagon, "--csv").stdout.splitlines()))
+        self.assertEqual(len(table), len(told["modes"]))
+        for row, mode in zip(table, told["modes"]):
+            self.assertAlmostEqual(float(row["damping_ratio"]), mode["damping_ratio"], delta=1e-5)
+        self.assertNotEqual(0, train_sim("modes", wagon, "--csv", "--json").returncode)
         adhesion = train_sim("adhesion", wagon, "--csv", "--set", "wheel_rail.adhesion=wet")
         rows = list(csv.DictReader(adhesion.stdout.splitlines()))
         self.assertEqual(0.0, float(rows[0]["adhesion_at_40_kmh"]))

@@ -8,6 +8,7 @@ struct KeysOptions {
   std::string path;         ///< of which keys; empty: all
   bool markdown = false;    ///< the page docs/configuration.md
   bool results = false;     ///< the page docs/result_files.md
+  bool kinds = false;       ///< only the names of the kinds of files
   std::string schema_kind;  ///< print the JSON schema of this kind of file; empty: none
 };
 

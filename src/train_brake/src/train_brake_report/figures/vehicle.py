@@ -4,7 +4,7 @@ The numbers come from `train_sim adhesion` and `train_sim modes`.
 """
 
 import csv
-import re
+import json
 import subprocess
 from typing import List
 
@@ -69,15 +69,24 @@ def draw_adhesion(vehicle_file: str, train_sim: List[str]) -> Figure:
 
 
 def mode_table(vehicle_file: str, train_sim: List[str]) -> Figure:
-    text = _train_sim(train_sim, "modes", vehicle_file)
-    rows = re.findall(r"^ *(\d+) +([\d.]+) +([\d.]+)% +(.*)$", text, flags=re.MULTILINE)
-    head, *_, step = [line for line in text.splitlines() if line]
+    told = json.loads(_train_sim(train_sim, "modes", vehicle_file, "--json"))
     return Figure(
         "modes",
         "Modes of vibration",
-        f"{head}. {step[0].upper()}{step[1:]}.",
+        f"{told['vehicle']}: {told['mass_kg']:.1f} kg, linearised about its static equilibrium, wedges without friction. "
+        f"Largest stable explicit step: {1e3 * told['largest_stable_step_s']:.3f} ms.",
         table=Table(
             ["mode", "frequency [Hz]", "damping [%]", "largest shares of the kinetic energy"],
-            [list(row) for row in rows],
+            [
+                [
+                    str(number),
+                    f"{mode['frequency_hz']:.3f}",
+                    f"{100 * mode['damping_ratio']:.2f}",
+                    ", ".join(
+                        f"{motion} {100 * share:.0f} %" for motion, share in mode["largest_energy_shares"].items()
+                    ),
+                ]
+                for number, mode in enumerate(told["modes"], 1)
+            ],
         ),
     )
