@@ -39,6 +39,7 @@ ELSEWHERE = {
     "hours": "measures everything; make bench",
     "tested": "has a test of its own: nodes of one's own beside a train",
     "suite": "is the test suite itself",
+    "noetic": "needs ROS in /opt/ros/noetic",
 }
 PROGRAMS = (
     "apt-get export make parallel ros2 rosbag rosbash roscore roslaunch rosmsg rosnode rosrun rosservice rosparam rostopic "
