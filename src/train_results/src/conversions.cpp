@@ -234,9 +234,11 @@ train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& m
   return command;
 }
 
+std::string VersionLine() { return "# train_brake " TRAIN_BRAKE_VERSION; }
+
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario) {
   std_msgs::String message;
-  message.data = strict_config::Write(scenario);
+  message.data = VersionLine() + "\n" + strict_config::Write(scenario);
   return message;
 }
 

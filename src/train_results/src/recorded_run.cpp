@@ -17,7 +17,16 @@ template <class Message>
 bool IsOf(const BagFile::Topic& topic) {
   if (topic.type != ros::message_traits::datatype<Message>()) return false;
   if (topic.md5sum == ros::message_traits::md5sum<Message>()) return true;
-  throw UnreadableBag(fmt::format("{} has another definition of {} than this build", topic.name, topic.type));
+  throw UnreadableBag(fmt::format(
+      "{} has another definition of {} than this version, train_brake {}; use the version that wrote the bag",
+      topic.name, topic.type, TRAIN_BRAKE_VERSION));
+}
+
+/// The text of a std_msgs/String.
+std::optional<std::string> TextOf(const Bytes& message) {
+  constexpr std::size_t kLength = sizeof(std::uint32_t);  // before the text
+  if (message.size() < kLength) return std::nullopt;
+  return std::string(message.begin() + kLength, message.end());
 }
 
 /// "/train" of "/train/state".
@@ -107,11 +116,22 @@ std::optional<std::string> RecordedRun::Scenario() {
     if (topic.name != train_ + "/" + kScenarioTopic || !IsOf<std_msgs::String>(topic) ||
         topic.messages.empty())
       continue;
-    const Bytes bytes = bag_.Read(topic.messages.front());
-    constexpr std::size_t kLength = sizeof(std::uint32_t);  // before the text
-    if (bytes.size() >= kLength) return std::string(bytes.begin() + kLength, bytes.end());
+    if (const auto text = TextOf(bag_.Read(topic.messages.front()))) return text;
   }
   return std::nullopt;
+}
+
+std::string WriterOf(const std::string& file) {
+  BagFile bag(file);
+  for (const BagFile::Topic& topic : bag.topics()) {
+    const bool is_scenario = topic.type == ros::message_traits::datatype<std_msgs::String>() &&
+                             topic.name == NamespaceOf(topic.name) + "/" + kScenarioTopic;
+    if (!is_scenario || topic.messages.empty()) continue;
+    const std::string text = TextOf(bag.Read(topic.messages.front())).value_or("");
+    const std::string line = text.substr(0, text.find('\n'));
+    if (line.rfind("# train_brake ", 0) == 0) return line.substr(2);
+  }
+  return "";
 }
 
 }  // namespace train_results

@@ -8,6 +8,7 @@
 
 #include "strict_config/writer.h"
 #include "train_dynamics/numeric/stream_digest.h"
+#include "train_results/conversions.h"
 #include "train_results/plain_file.h"
 
 namespace train_results {
@@ -18,8 +19,6 @@ using train_dynamics::ScenarioParams;
 using train_dynamics::config::LoadedScenario;
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // [bytes], of 1.8 million wagons
-
-std::string VersionLine() { return "# train_brake " TRAIN_BRAKE_VERSION; }
 
 std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -121,8 +120,8 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
   const std::string identity = IdentityOf(then.params);
   if (FirstLine(checkpoint.scenario) != VersionLine()) {
     throw std::invalid_argument(fmt::format(
-        "{} was written by '{}', this is '{}': other versions may give other bits, so it cannot resume "
-        "this run",
+        "{} was written by '{}', this is '{}': other versions may give other bits. Finish the run with the "
+        "version that began it, or run its config.yaml again",
         (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2),
         VersionLine().substr(2)));
   }

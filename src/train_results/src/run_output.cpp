@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "strict_config/writer.h"
+#include "train_results/conversions.h"
 #include "train_results/plain_file.h"
 #include "train_results/slide_tables.h"
 
@@ -92,7 +93,7 @@ void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
     if (error) throw std::runtime_error("cannot write " + copy.string() + ": " + WriteFailure(error.value()));
     scenario.pressure_table = "pressure_table.csv";
   }
-  WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + strict_config::Write(scenario));
+  WriteFile(folder / "config.yaml", std::string(kMark) + "\n" + ScenarioMessage(scenario).data);
 }
 
 /// The scenario of a run that was given live commands: with them, each at its exchange.

@@ -355,9 +355,27 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   return train_run::kSuccess;
 }
 
-int Unreadable(const std::string& recording, const std::string& why) {
-  train_console::Tell("train_sim: {} cannot be verified: {}\n", recording, why);
-  return train_run::kUnreadable;
+/// "train_brake 0.1.0": the program that recorded a run, by its bag or the summary.json beside it; empty where neither tells.
+std::string WriterOf(const fs::path& recording) {
+  try {
+    const std::string writer = train_results::WriterOf(BagOf(recording));
+    const fs::path summary = FolderOf(recording) / "summary.json";
+    if (!writer.empty() || !IsOfARun(recording) || !fs::exists(summary)) return writer;
+    const auto json = nlohmann::json::parse(train_results::ReadPlainFile(summary, 1 << 20));
+    return "train_brake " + json.at("version").get<std::string>();
+  } catch (const std::exception&) {
+    return "";  // what is wrong with them has been told
+  }
+}
+
+/// Tells what to do with the recording of another version.
+void TellWriter(const std::string& recording) {
+  const std::string writer = WriterOf(recording), own = "train_brake " TRAIN_BRAKE_VERSION;
+  if (writer.empty() || writer == own) return;
+  train_console::Tell(
+      "train_sim: {} was written by {}, this is {}: other versions may give other bits; verify it with the "
+      "version that wrote it\n",
+      recording, writer, own);
 }
 
 }  // namespace
@@ -365,9 +383,13 @@ int Unreadable(const std::string& recording, const std::string& why) {
 int Verify(const VerifyOptions& options) {
   try {
     RecordedRun recorded(BagOf(options.recording), options.train);
-    return Repeat(options, recorded);
+    const int code = Repeat(options, recorded);
+    if (code == train_run::kDifferent) TellWriter(options.recording);
+    return code;
   } catch (const std::exception& e) {
-    return Unreadable(options.recording, e.what());
+    train_console::Tell("train_sim: {} cannot be verified: {}\n", options.recording, e.what());
+    TellWriter(options.recording);
+    return train_run::kUnreadable;
   }
 }
 

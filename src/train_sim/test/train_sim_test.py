@@ -1110,6 +1110,38 @@ class TrainSimTest(unittest.TestCase):
                 twice.write(topic, message, t + rospy.Duration(1.0))
         self.assertIn("falls from exchange 100 to 0: the bag holds more than one run", self.verify(self.out, code=6))
 
+    def test_verify_names_the_version_that_wrote_a_recording(self):
+        """Of a bag whose messages another version has defined otherwise, and of one with other bits; the bag tells, or else
+        summary.json. Nothing is said of this version's own."""
+        self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
+        own = train_sim("--version").stdout.split()[1]
+        bag, summary = self.out / "train.bag", self.out / "summary.json"
+        whole = bag.read_bytes()
+        with rosbag.Bag(str(bag)) as opened:
+            md5sum = opened.get_type_and_topic_info().msg_types["train_brake_msgs/TrainState"].encode()
+        self.assertIn(b"# train_brake " + own.encode() + b"\n", whole)
+        self.assertEqual(f"# train_brake {own}", (self.out / "config.yaml").read_text().splitlines()[1])
+        other = "9" + own[1:]
+        told = f"was written by train_brake {other}, this is train_brake {own}"
+        defined = whole.replace(md5sum, md5sum[::-1])
+        self.assertNotEqual(whole, defined)
+        bag.write_bytes(defined)
+        said = self.verify(self.out, code=6)
+        self.assertIn(f"another definition of train_brake_msgs/TrainState than this version, train_brake {own}", said)
+        self.assertNotIn("was written by", said)
+        bag.write_bytes(defined.replace(b"# train_brake " + own.encode(), b"# train_brake " + other.encode()))
+        self.assertIn(told, self.verify(self.out, code=6))
+        alone = self.out / "alone.bag"
+        bag.rename(alone)
+        self.assertIn(told, self.verify(alone, code=6))
+        bag.write_bytes(defined.replace(b"# train_brake " + own.encode(), b"# a bag of some version"[: 14 + len(own)]))
+        summary.write_text(json.dumps({**json.loads(summary.read_text()), "version": other}))
+        self.assertIn(told, self.verify(self.out, code=6))
+        bag.write_bytes(whole)
+        changed = {**json.loads(summary.read_text()), "version": own, "state_digest": "0" * 16}
+        summary.write_text(json.dumps(changed))
+        self.assertNotIn("was written by", self.verify(self.out, code=5))
+
     def test_verify_survives_damaged_bags(self):
         """Any verdict will do, a crash will not: bytes changed, numbers blown up, pieces cut out, the end cut off."""
         self.run_ok(DIP, "--model", "ltd", "--out", self.out, "--set", "duration_s=0.05")

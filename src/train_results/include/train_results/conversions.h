@@ -49,7 +49,11 @@ inline constexpr const char* kGivenTopic = "driver/given";
 /// Topic of the scenario, in the namespace of the train; once in a run.
 inline constexpr const char* kScenarioTopic = "scenario";
 
-/// The scenario with everything resolved, as YAML that runs again: what a viewer of a run or bag has to know.
+/// "# train_brake VERSION": the first line of each scenario that this program writes.
+std::string VersionLine();
+
+/// The scenario with everything resolved, as YAML that runs again, behind VersionLine: what the viewer of a run or of a bag
+/// needs to know.
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario);
 
 }  // namespace train_results

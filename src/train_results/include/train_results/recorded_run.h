@@ -36,6 +36,11 @@ class RecordedTopic {
   Bytes message_;
 };
 
+/// The program that wrote the scenario in a bag, "train_brake 0.2.0"; empty where the bag does not tell.
+/// Needs none of the other messages, whose definitions another version may have changed.
+/// @throws UnreadableBag
+std::string WriterOf(const std::string& file);
+
 /// The run of one train in a bag, recorded by train_sim, ltd_master or rosbag record.
 ///
 /// Topics are known by their types and share the namespace of the topic of TrainState.
