@@ -216,9 +216,11 @@ class ReportTest(unittest.TestCase):
                 stdout=full,
                 stderr=subprocess.PIPE,
                 text=True,
+                # Python writes its buffer once more at its end, unless it has none.
+                env={name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"},
             )
         self.assertEqual((0, True), (done.returncode, out.exists()), done.stderr)
-        self.assertNotIn("could not be written", done.stderr)
+        self.assertEqual("", done.stderr)
 
     def test_a_page_needs_no_locale(self):
         folder = self.copy("Z\u00fcge")

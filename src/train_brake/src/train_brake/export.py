@@ -1,7 +1,6 @@
 """The command `export`: a run as CSV tables or as one HDF5 file."""
 
 import argparse
-import contextlib
 import csv
 import json
 import pathlib
@@ -11,7 +10,7 @@ from typing import List
 import numpy
 
 from train_brake.bag import BagError
-from train_brake.presentable import accept_all_characters, presentable
+from train_brake.presentable import accept_all_characters, presentable, tell
 from train_brake.run import Run, load
 
 DESCRIPTION = """Writes what a run has recorded as CSV tables, one per topic, or as one HDF5 file.
@@ -114,8 +113,7 @@ def _export(options: argparse.Namespace) -> None:
     run.read(topics)
     is_hdf5 = options.out.suffix in (".h5", ".hdf5")
     for file in (write_hdf5 if is_hdf5 else write_csv)(run, topics, options.out):
-        with contextlib.suppress(OSError):  # the table is there, whether or not that can be told
-            print(presentable(f"export: wrote {file}"), flush=True)
+        tell(f"export: wrote {file}")
     for topic in topics:
         left_out = [field for field in run[topic].fields if run[topic][field].dtype == object]
         if left_out:

@@ -1,5 +1,6 @@
 """Text of unknown origin (names, paths, what programs report), as it may be shown on a terminal and on a page."""
 
+import contextlib
 import os
 import sys
 import unicodedata
@@ -21,3 +22,14 @@ def accept_all_characters() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+
+
+def tell(line: str) -> None:
+    """Prints what nobody has to read for the work to be done, such as where its results are. An output that takes no more (a
+    full disk, a reader that is gone) fails nothing: neither now nor when Python writes its buffer at the end of the program.
+    """
+    try:
+        print(presentable(line), flush=True)
+    except OSError:
+        with contextlib.suppress(OSError):  # closed
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

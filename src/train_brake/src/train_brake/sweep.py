@@ -25,6 +25,7 @@ from typing import Any, Dict, List, Optional
 
 import numpy
 
+from train_brake.presentable import tell
 from train_brake.study import (
     TRAIN_SIM,
     Change,
@@ -338,7 +339,7 @@ def write_percentiles(study: Study, rows: List[Dict[str, Any]]) -> List[Dict[str
 def _run(options: argparse.Namespace, train_sim) -> int:
     study = Study.create(options, train_sim) if options.scenario else Study(options.out)
     if options.plan_only:
-        print(f"sweep: planned {len(study.plan)} runs: {study.folder / 'plan.csv'}")
+        tell(f"sweep: planned {len(study.plan)} runs: {study.folder / 'plan.csv'}")
         return 0
     code = 0
     if not options.collect:
@@ -352,13 +353,13 @@ def _run(options: argparse.Namespace, train_sim) -> int:
     if not rows:
         print("sweep: no run is done yet", file=sys.stderr)
         return code
-    print(f"sweep: wrote {write_results(study, rows)}")
+    tell(f"sweep: wrote {write_results(study, rows)}")
     if study.asked["random"]:
         write_percentiles(study, rows)
-        print(f"sweep: wrote {study.folder / 'percentiles.csv'}")
+        tell(f"sweep: wrote {study.folder / 'percentiles.csv'}")
     from train_brake_report.study_page import write_page  # pylint: disable=import-outside-toplevel
 
-    print(f"sweep: wrote {write_page(study, rows, options.results, options.figures)}")
+    tell(f"sweep: wrote {write_page(study, rows, options.results, options.figures)}")
     if len(rows) < len(study.plan):
         print(
             f"sweep: {len(rows)} of {len(study.plan)} runs are done; `rosrun train_brake sweep {study.folder}` goes on",

@@ -1,7 +1,6 @@
 """The command `report`: arguments, files, exit codes."""
 
 import argparse
-import contextlib
 import datetime
 import pathlib
 import platform
@@ -14,7 +13,7 @@ import numpy
 
 from train_brake_report import cards, contents, page, paper, style
 from train_brake.bag import BagError
-from train_brake.presentable import accept_all_characters, presentable
+from train_brake.presentable import accept_all_characters, presentable, tell
 from train_brake_report.group import Group
 from train_brake_report.run import Run, label_runs, scenario_of
 
@@ -224,6 +223,5 @@ def main(argv: List[str], train_sim: List[str] = ("rosrun", "train_sim", "train_
         return 1
     except KeyboardInterrupt:
         return 130
-    with contextlib.suppress(OSError):  # the page is there, whether or not that can be told
-        print(presentable(f"report: wrote {out}"), flush=True)
+    tell(f"report: wrote {out}")
     return 0
