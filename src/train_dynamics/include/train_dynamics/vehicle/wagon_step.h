@@ -91,7 +91,7 @@ bool FindOneSurface(const BogieVehicle<kPerBogie>& w, const Track& track, double
   return true;
 }
 
-/// @tparam kAll, @param surface  see StepWagonWith
+/// kAll and surface: see StepWagonWith.
 template <bool kAll, class T, int kPerBogie>
 RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
                                        const OneSurface& surface, const WagonState<T, kPerBogie>& s) {
