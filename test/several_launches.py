@@ -331,6 +331,18 @@ class SeveralLaunches(LaunchTest):
         branch = self.run_command("runs/two", "resume:=runs/one", "set:=duration_s=0.12", folder=caller)
         self.assertEqual(0, branch[0], branch[1])
 
+    def test_run_needs_nobody_who_reads_what_it_tells(self):
+        # As for a user: Python writes its buffer once more at its end, unless it has none.
+        environment = {k: v for k, v in self.master.environment.items() if k != "PYTHONUNBUFFERED"}
+        words = f"rosrun train_brake run {SHORT_TRAIN} unread set:=duration_s=0.1"
+        for redirection in (">/dev/full 2>&1", ">&- 2>&-", "<&- >&- 2>&-", "> >(true) 2>&1"):
+            done = subprocess.run(
+                ["bash", "-c", f"{words} {redirection}"], cwd=self.folder, env=environment, timeout=120, check=False
+            )
+            self.assertEqual(0, done.returncode, redirection)
+            (self.folder / "unread" / "summary.json").unlink()
+            (self.folder / "unread" / "report.html").unlink()
+
     def test_a_machine_that_does_not_know_its_own_name_goes_by_localhost(self):
         elsewhere = ["unshare", "--uts", "bash", "-c", 'hostname nowhere.invalid && exec "$@"', "bash"]
         if subprocess.run([*elsewhere, "true"], stderr=subprocess.DEVNULL, check=False).returncode:

@@ -148,8 +148,9 @@ def outlived_output():
     try:
         yield
     finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in (sys.stdout, sys.stderr):
+            if stream is not None:  # of a closed descriptor
+                stream.flush()
         for descriptor, reader in shields:
             os.dup2(os.open(os.devnull, os.O_WRONLY), descriptor)
             with contextlib.suppress(subprocess.TimeoutExpired):
