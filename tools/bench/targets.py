@@ -67,8 +67,8 @@ transformations between bodies and elements most of the rest ([table](#one-vehic
 {limit.issue_share %} of the time ([below](#how-far-from-the-machines-limit)). Beside them recording adds
 {runs.2d_1_recording_cpu %} of CPU time on one thread, {runs.2d_{cores}_recording %} of wall time on all cores."""
 REASONS = {
-    "minutes": """nearly all of it are the launches of up to 242 processes, which take longer to start and to end than to
-run ([table](#ranks-and-mpi)).""",
+    "minutes": """most of it are the launches of up to 242 processes, which take longer to start and to end
+than to run ([table](#ranks-and-mpi)).""",
     "2d_bag": WHOLE_STEP,
     "2d_1_wall_s": WHOLE_STEP,
     "2d_{cores}_wall_s": WHOLE_STEP,
@@ -77,9 +77,8 @@ each record, and the kernel's copies into its page cache are as long as the run,
     "ranks_wall_s": """{graph.overhead_ms} ms of each exchange are waking up; the rest is the wagons' own time, on cores of which one
 has the master and the recorder besides.""",
     "every_vehicle_wall_s": RANKS,
-    "patches_ns": """wagons that stand on two surfaces, or within a ramp, look up each wheel's surface and solve the slip with
-a law of its own for each lane; the first patch of this train ends 50 m before its first vehicle, so that the packs at its
-end do so all the time.""",
+    "patches_ns": """wagons side by side that stand on several surfaces look up each wheel's surface, and solve the slip with a
+law for each lane; those on one surface pay for its law: falling friction has an exponential in each iteration.""",
     "ltd_1_wall_s": """couplers take {vehicles.ltd_share_of_couplers %} of an exchange, the vehicles themselves
 {vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and two
 divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",

@@ -310,26 +310,35 @@ TEST(Standstill, HoldsWhereItStoppedOnAGrade) {
   EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
 }
 
-// Plain vehicles on a plain track have a step of their own; what it leaves out must have been nothing.
-TEST(Wagon, WhatLiesFarAheadOnTheTrackChangesNoBit) {
-  TrackParams dip, patch;
-  dip.dips = {{1e5, 0.05, 10.0}};
-  patch.friction_patches = {{1e5, 1.1e5, 0.02}};
-  for (const TrackParams& far_ahead : {dip, patch}) {
-    Ride plain(OreWagon(), {}, 10.0), full(OreWagon(), far_ahead, 10.0);
-    ASSERT_TRUE(plain.track.IsPlain());
-    ASSERT_FALSE(full.track.IsPlain());
-    const auto loads = [](double time_s) {
-      VehicleLoads<double> braking;
-      braking.cylinder_pressure_pa = EmergencyPressure(time_s);
-      braking.front_coupler_n = 2e4 * std::sin(3.0 * time_s);
-      return braking;
-    };
-    plain.loads_at = full.loads_at = loads;
-    plain.Run(40.0);
-    full.Run(40.0);
-    EXPECT_LT(std::abs(plain.Speed()), 0.05);  // it stopped on the way
-    EXPECT_EQ(0, std::memcmp(&plain.state, &full.state, sizeof plain.state));
+// Plain vehicles on one surface and on no dip have a step of their own; what it leaves out must have been nothing.
+TEST(Wagon, TheStepWithoutLookUpsGivesTheSameBits) {
+  TrackParams plain, dip, patches;
+  dip.dips = {{60.0, 0.05, 10.0}};
+  patches.friction_patches = {{40.0, 80.0, 0.02}, {80.0, 1e3, 0.2}};
+  patches.friction_patches[1].ramp_length_m = 5.0;
+  for (const TrackParams& track : {plain, dip, patches}) {
+    for (const BrakeReaction reaction : {BrakeReaction::kNone, BrakeReaction::kFrame}) {
+      VehicleParams params = OreWagon();
+      params.brake_rigging.reaction = reaction;
+      Ride ride(params, track, 10.0);
+      WagonState<double> looked_up = ride.state;
+      int with = 0, without = 0;
+      while (ride.Speed() > 0.0 && ride.time_s < 60.0) {
+        VehicleLoads<double> loads;
+        loads.cylinder_pressure_pa = EmergencyPressure(ride.time_s);
+        loads.front_coupler_n = 2e4 * std::sin(3.0 * ride.time_s);
+        OneSurface surface;
+        ++(FindOneSurface(ride.wagon, ride.track, kStep, ride.state, surface) ? without : with);
+        StepWagon(ride.wagon, ride.track, loads, kStep, ride.state, &ride.output);
+        WagonOutput<double> output;
+        StepWagonWith<true, true>(ride.wagon, ride.track, {}, loads, kStep, looked_up, &output);
+        ride.time_s += kStep;
+        ASSERT_EQ(0, std::memcmp(&ride.state, &looked_up, sizeof looked_up)) << ride.time_s;
+        ASSERT_EQ(0, std::memcmp(&ride.output, &output, sizeof output)) << ride.time_s;
+      }
+      EXPECT_GT(without, 1000);
+      EXPECT_EQ(ride.track.IsPlain(), with == 0);  // it met what there is
+    }
   }
 }
 

@@ -232,6 +232,7 @@ OneSurface OwnSurface(const AdhesionParams& vehicle) {
   return {vehicle.friction_coefficient, &vehicle};
 }
 
+/// That surface, as it is under one wheel of each lane.
 template <class T>
 RailSurface<T> Under(const OneSurface& one) {
   RailSurface<T> surface;
