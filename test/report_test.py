@@ -609,8 +609,8 @@ class ReportTest(unittest.TestCase):
         )
         self.assertNotIn("Charging", page.caption("air_brake"))
         found = wave.application(Run(parted, None))
-        # A drop of 20 kPa travels at 268.1 m/s at most in a pipe that is 1.1 times as long as the train; vents of 6.35 mm and
-        # two cells per vehicle make it slower, by no more than a tenth.
+        # A drop of 20 kPa travels at 268.1 m/s at most in a pipe that is 1.1 times as long as the train; vents of 6.35
+        # mm and two cells per vehicle make it slower, by no more than a tenth.
         self.assertLess(found.speed_mps, 1.01 * 268.1 / 1.1)
         self.assertGreater(found.speed_mps, 0.9 * 268.1 / 1.1)
         self.assertLessEqual({vehicle for vehicle, _ in found.sources()}, {75, 76})
@@ -683,7 +683,8 @@ class ReportTest(unittest.TestCase):
         self.assertIn("over_the_distance", page.figures)
         self.assertIn("Halt &amp; Ford", page.text)
         state = train_brake.load(run)["state"]
-        # Above 60 km/h from when the front is at 120 m; LTD trains of equal wagons: the mean speed is that of the momentum.
+        # Above 60 km/h from when the front is at 120 m; LTD trains of equal wagons: the mean speed is that of the
+        # momentum.
         front_m = state["position_m"][:, 0] + 0.5 * 10.5
         over = (front_m >= 120) & (3.6 * state["speed_mps"].mean(axis=1) > 60)
         self.assertGreater(over.sum(), 5)

@@ -21,9 +21,9 @@ import rosunit
 
 from launches import SHORT_TRAIN, Launch, RosMaster, train_sim, wait_until
 
-# What a process may need more at one time than before, and keep, and what it may lose in each round. A wagon node's copy
-# of the scenario's text alone is ten times as much. What roscore loses is ROS's own: it is in Python, has a thread for
-# each that calls it, and remembers every roslaunch and every node.
+# What a process may need more at one time than before, and keep, and what it may lose in each round. A wagon node's
+# copy of the scenario's text alone is ten times as much. What roscore loses is ROS's own: it is in Python, has a thread
+# for each that calls it, and remembers every roslaunch and every node.
 ALLOCATED_KIB, LOST_KIB_PER_ROUND = {"roscore": 2048}, {"roscore": 20}
 
 

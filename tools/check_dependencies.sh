@@ -1,6 +1,6 @@
 #!/bin/sh
-# The dependency rules of docs/architecture.md, checked on the include lines. Ends with 1 if one is broken, or if a folder
-# that a rule is about does not exist.
+# The dependency rules of docs/architecture.md, checked on the include lines. Ends with 1 if one is broken, or if a
+# folder that a rule is about does not exist.
 set -u
 cd "$(dirname "$0")/../src" || exit 1
 status=0

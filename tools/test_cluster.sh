@@ -121,7 +121,8 @@ failed() {
 }
 [ "$code" = 0 ] && [ -n "$expected" ] && [ "$got" = "$expected" ] && [ "$placed" = "3 2 2" ] && [ "$left" = 0 ] || failed
 
-# A study whose runs are dealt to two of the machines by GNU parallel (docs/studies.md): the table of one that was run here.
+# A study whose runs are dealt to two of the machines by GNU parallel (docs/studies.md): the table of one that was run
+# here.
 study() { rosrun train_brake sweep "$workspace/config/scenarios/single_wagon_stop.yaml" "$work/$1" --grid initial_speed_kmh=40:80:6 "${@:2}" >/dev/null 2>&1; }
 study here && study far --plan-only && mkdir -p "$work/remote" || failed
 (cd "$work" && parallel --will-cite --ssh "ssh -i $work/home/.ssh/id_rsa -o UserKnownHostsFile=$work/home/.ssh/known_hosts" \

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Packs an install space as the Debian packages train-brake and train-brake-rviz.
 #
-# usage: tools/deb/make_deb.sh ROOT OUT    ROOT: what `catkin_make install` made with DESTDIR and the prefix /opt/train_brake
+# usage: tools/deb/make_deb.sh ROOT OUT    ROOT: what `catkin_make install` made with DESTDIR and the prefix
+# /opt/train_brake
 set -eo pipefail
 root=$(realpath "$1") out=$2
 here=$(cd "$(dirname "$0")" && pwd)

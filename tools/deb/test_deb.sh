@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs the packages of a folder on a bare Debian 12 (debootstrap), runs trains with them, removes them. Needs root and a
-# Debian mirror.
+# Installs the packages of a folder on a bare Debian 12 (debootstrap), runs trains with them, removes them. Needs root
+# and a Debian mirror.
 #
 # usage: tools/deb/test_deb.sh FOLDER [ROOT]    ROOT: a bare root that is there already, or where it shall stay
 set -eo pipefail
@@ -19,7 +19,8 @@ cp /etc/resolv.conf "$root/etc/resolv.conf"
 [ -e "$root/etc/hosts" ] || echo "127.0.0.1 localhost" >"$root/etc/hosts"  # a bare root has none, and ROS asks for it
 [ ! -e /etc/apt/apt.conf ] || cp /etc/apt/apt.conf "$root/etc/apt/"
 mkdir -p "$root/packages" && cp "$packages"/train-brake_*.deb "$root/packages/"
-# Positional parameters would be those of a function that fails: none here. Nothing is removed while anything is mounted below it.
+# Positional parameters would be those of a function that fails: none here. Nothing is removed while anything is mounted
+# below it.
 end() {
   for mounted in dev/shm dev proc; do
     ! mountpoint -q "$root/$mounted" || umount "$root/$mounted" || { echo "test_deb: $root/$mounted is still mounted" >&2; return; }

@@ -28,8 +28,8 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
       : command.IsOfLocomotives()
           ? train_dynamics::JudgeLocomotiveCommand(command.OfLocomotives(0.0), "command", scenario.train)
       : command.IsOfLocomotiveBrakes()
-          ? train_dynamics::JudgeLocomotiveBrakeCommand(command.OfLocomotiveBrakes(0.0), "command",
-                                                        scenario.train, *scenario.brake)
+          ? train_dynamics::JudgeLocomotiveBrakeCommand(command.OfLocomotiveBrakes(0.0), "command", scenario.train,
+                                                        *scenario.brake)
           : scenario.brake->BrokenRules({command.OfBrake(0.0)}, scenario.train.VehicleCount());
   if (broken.empty()) return "";
   const std::string& key = broken.front().key;  // "commands[0].reduction_kpa", "command.notch"
@@ -38,8 +38,7 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
 
 }  // namespace
 
-DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message,
-                                  std::uint64_t exchange) const {
+DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) const {
   const DriverCommand command =
       train_dynamics::WithVehicles({train_results::CommandOf(message, exchange)}, scenario_.train).front();
   if (!command.group.empty()) {

@@ -58,15 +58,14 @@ std::string ServedElsewhere() {
 
 }  // namespace
 
-LockstepDriver::LockstepDriver(LockstepDriverOptions options, std::uint64_t run_id,
-                               double exchange_interval_s)
+LockstepDriver::LockstepDriver(LockstepDriverOptions options, std::uint64_t run_id, double exchange_interval_s)
     : options_(std::move(options)) {
   options_.node = ros::names::resolve(options_.node);
   const double exchanges = options_.control_period_s / exchange_interval_s;
   if (!(exchanges > 0.5 && std::abs(exchanges - std::round(exchanges)) < 1e-6)) {
-    throw std::invalid_argument(fmt::format(
-        "parameter control_period_s must be a multiple of the exchange interval, {:g} s, got {:g}",
-        exchange_interval_s, options_.control_period_s));
+    throw std::invalid_argument(
+        fmt::format("parameter control_period_s must be a multiple of the exchange interval, {:g} s, got {:g}",
+                    exchange_interval_s, options_.control_period_s));
   }
   exchanges_ = static_cast<std::uint64_t>(std::lround(exchanges));
   call_.request.protocol_version = train_brake_msgs::DriveRequest::PROTOCOL_VERSION;
@@ -85,8 +84,7 @@ void LockstepDriver::Connect() {
     std::uint32_t port = 0;
     try {
       if (ros::ServiceManager::instance()->lookupService(service, host, port)) {
-        link_ = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Drive>(),
-                                              kHandshake);
+        link_ = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Drive>(), kHandshake);
         return;
       }
       is_advertised = false;
@@ -102,10 +100,10 @@ void LockstepDriver::Connect() {
     if (in_vain || waited_s > next_report_s) {
       if (!is_advertised && ros::master::check()) why_not += ServedElsewhere();
       if (in_vain)
-        throw DriverFailure(fmt::format("the driver {} is missing after {:.0f} s: its service {} {}",
-                                        options_.node, waited_s, service, why_not));
-      ROS_WARN("waiting for %.0f s already for the driver %s: its service %s %s", waited_s,
-               options_.node.c_str(), service.c_str(), why_not.c_str());
+        throw DriverFailure(fmt::format("the driver {} is missing after {:.0f} s: its service {} {}", options_.node,
+                                        waited_s, service, why_not));
+      ROS_WARN("waiting for %.0f s already for the driver %s: its service %s %s", waited_s, options_.node.c_str(),
+               service.c_str(), why_not.c_str());
       next_report_s += kSecondsPerReport;
     }
     std::this_thread::sleep_for(kRetry);
@@ -128,8 +126,7 @@ LockstepDriver::Commands LockstepDriver::Ask(const train_brake_msgs::DriverView&
   if (answer.protocol_version != train_brake_msgs::DriveRequest::PROTOCOL_VERSION) {
     throw DriverFailure(fmt::format(
         "the master speaks version {} of Drive.srv, the driver {} version {}: both must be of the same build",
-        std::uint32_t{train_brake_msgs::DriveRequest::PROTOCOL_VERSION}, options_.node,
-        answer.protocol_version));
+        std::uint32_t{train_brake_msgs::DriveRequest::PROTOCOL_VERSION}, options_.node, answer.protocol_version));
   }
   if (!answer.ok) {
     Lose(view.exchange, answer.message.empty() ? "gives up" : "gives up: " + answer.message);
@@ -147,8 +144,7 @@ void LockstepDriver::Call(std::uint64_t exchange) {
   while (!link_->Receive(call_.response)) {
     link_->Wait(Patience::kCheckPeriod);
     const bool in_time = patience.Look([&](double waited_s) {
-      ROS_WARN("exchange %lu: waiting for %.0f s already for the driver %s", exchange, waited_s,
-               options_.node.c_str());
+      ROS_WARN("exchange %lu: waiting for %.0f s already for the driver %s", exchange, waited_s, options_.node.c_str());
     });
     if (!in_time) throw LinkError(fmt::format("no answer within {:g} s", options_.deadline_s));
   }

@@ -39,20 +39,18 @@ void RefuseTakenName() {
   using train_node::RunningNode;
   const RunningNode other = train_node::FindNodeOfOwnName();
   if (other.state == RunningNode::State::kNone) return;
-  const std::string about = other.state == RunningNode::State::kSilent
-                                ? "it does not answer; stopped, or in a debugger"
-                            : other.about.empty() ? "it is starting"
-                                                  : other.about;
-  throw std::invalid_argument(fmt::format(
-      "{0} runs already under the ROS master {1}, on {2}: {3}. It goes on, and nothing was started here. "
-      "A second train needs a namespace of its own, which its topics and services get, too:\n"
-      "  ROS_NAMESPACE=north roslaunch train_brake ...    # /north{0}",
-      ros::this_node::getName(), ros::master::getURI(), other.host, about));
+  const std::string about = other.state == RunningNode::State::kSilent ? "it does not answer; stopped, or in a debugger"
+                            : other.about.empty()                      ? "it is starting"
+                                                                       : other.about;
+  throw std::invalid_argument(
+      fmt::format("{0} runs already under the ROS master {1}, on {2}: {3}. It goes on, and nothing was started here. "
+                  "A second train needs a namespace of its own, which its topics and services get, too:\n"
+                  "  ROS_NAMESPACE=north roslaunch train_brake ...    # /north{0}",
+                  ros::this_node::getName(), ros::master::getURI(), other.host, about));
 }
 
 /// What was left on the ROS master by others, and is used by a node that was started by hand.
-void TellStaleParameters(const train_node::NodeParameters& parameters,
-                         const std::vector<std::string>& arguments) {
+void TellStaleParameters(const train_node::NodeParameters& parameters, const std::vector<std::string>& arguments) {
   std::vector<std::string> stale;
   for (const std::string& name : parameters.Names()) {
     const std::string given = "_" + name + ":=";
@@ -63,13 +61,12 @@ void TellStaleParameters(const train_node::NodeParameters& parameters,
     if (std::none_of(arguments.begin(), arguments.end(), is_given)) stale.push_back(name);
   }
   if (stale.empty()) return;
-  ROS_WARN(
-      "these parameters were on the ROS master before, and are used: %s (rosparam delete %s forgets them)",
-      fmt::format("{}", fmt::join(stale, ", ")).c_str(), ros::this_node::getName().c_str());
+  ROS_WARN("these parameters were on the ROS master before, and are used: %s (rosparam delete %s forgets them)",
+           fmt::format("{}", fmt::join(stale, ", ")).c_str(), ros::this_node::getName().c_str());
 }
 
-/// The file that gets the exit code, through links. What an earlier run left there is removed, so that it is not taken for
-/// this one's. Throws std::invalid_argument if it cannot be written: before the run, not after it.
+/// The file that gets the exit code, through links. What an earlier run left there is removed, so that it is not taken
+/// for this one's. Throws std::invalid_argument if it cannot be written: before the run, not after it.
 std::string MakeReady(const std::string& exit_status_file) {
   namespace fs = std::filesystem;
   try {
@@ -103,8 +100,7 @@ int main(int argc, char** argv) {
     RefuseTakenName();
     own.emplace("~");
     TellStaleParameters(parameters, arguments);
-    const auto options =
-        ltd_master::MasterOptions::FromParameters(parameters, ros::this_node::getNamespace());
+    const auto options = ltd_master::MasterOptions::FromParameters(parameters, ros::this_node::getNamespace());
     exit_code = ltd_master::MasterNode(options, ros::NodeHandle(), *own).Run();
   } catch (const strict_config::Error& e) {
     ROS_FATAL("bad configuration:\n%s", train_console::Presentable(e.what()).c_str());

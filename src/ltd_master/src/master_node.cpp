@@ -126,8 +126,7 @@ MasterOptions MasterOptions::FromParameters(train_node::NodeParameters& paramete
   options.overrides = SplitSettings(settings);
   if (!model.empty()) options.overrides.push_back("model=" + model);
   if (interval_s > 0.0) options.overrides.push_back(fmt::format("exchange_interval_s={}", interval_s));
-  if (!detail.empty())
-    options.overrides.push_back(fmt::format("detail_vehicles=[{}]", fmt::join(detail, ", ")));
+  if (!detail.empty()) options.overrides.push_back(fmt::format("detail_vehicles=[{}]", fmt::join(detail, ", ")));
   return options;
 }
 
@@ -155,8 +154,8 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
                     options.vehicles, resumed_ ? options.resume : options.scenario, vehicles, vehicles));
   }
   if (options.ranks < 0 || options.ranks > vehicles) {
-    throw std::invalid_argument(fmt::format(
-        "parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
+    throw std::invalid_argument(
+        fmt::format("parameter ranks must be in [0, {}], the number of vehicles, got {}", vehicles, options.ranks));
   }
   ledger_publisher_ = node.advertise<train_brake_msgs::EnergyLedger>("energy_ledger", kQueue, true);
   slides_publisher_ = node.advertise<train_brake_msgs::Slides>("slides", kQueue, true);
@@ -177,8 +176,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   std::map<std::string, std::string> services;
   for (const ros::ServiceServer& service : services_) services[service.getService()] = "";
   constexpr std::chrono::seconds kPeriod(1);
-  registration_ =
-      std::make_unique<train_node::RegistrationWatch>(kPeriod, services, [this] { clock_.TellUse(); });
+  registration_ = std::make_unique<train_node::RegistrationWatch>(kPeriod, services, [this] { clock_.TellUse(); });
 }
 
 /// What the user has given and this run does not use, and where its results go.
@@ -186,23 +184,21 @@ void MasterNode::TellWhatIsNotUsed() const {
   const bool is_2d = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
   if (is_2d && options_.vehicles == 0 && options_.ranks == 0) {
     const int vehicles = scenario_.consist.vehicles();
-    ROS_WARN("all %d vehicles are in the master, on one core; vehicles:=%d puts them on wagon nodes",
-             vehicles, vehicles);
+    ROS_WARN("all %d vehicles are in the master, on one core; vehicles:=%d puts them on wagon nodes", vehicles,
+             vehicles);
   }
-  if (!options_.nodes.empty() && options_.nodes != "auto" &&
-      options_.nodes != std::to_string(options_.ranks)) {
+  if (!options_.nodes.empty() && options_.nodes != "auto" && options_.nodes != std::to_string(options_.ranks)) {
     ROS_WARN("nodes:=%s is not used: %s", Presentable(options_.nodes).c_str(),
-             is_2d ? fmt::format("the train has {} vehicles and runs on {} wagon nodes",
-                                 scenario_.consist.vehicles(), options_.ranks)
+             is_2d ? fmt::format("the train has {} vehicles and runs on {} wagon nodes", scenario_.consist.vehicles(),
+                                 options_.ranks)
                          .c_str()
                    : "trains of the LTD models run in the master alone");
   }
   const LockstepDriverOptions& driver = options_.driver;
   const LockstepDriverOptions defaults;
-  if (driver.node.empty() &&
-      (driver.control_period_s != defaults.control_period_s || driver.deadline_s != defaults.deadline_s ||
-       driver.on_lost != defaults.on_lost || driver.sight_m != defaults.sight_m ||
-       driver.sees_couplers != defaults.sees_couplers))
+  if (driver.node.empty() && (driver.control_period_s != defaults.control_period_s ||
+                              driver.deadline_s != defaults.deadline_s || driver.on_lost != defaults.on_lost ||
+                              driver.sight_m != defaults.sight_m || driver.sees_couplers != defaults.sees_couplers))
     ROS_WARN(
         "control_period, driver_timeout, on_lost_driver, driver_sight and driver_sees_couplers are not used: "
         "there is no driver in lockstep (driver:=NODE)");
@@ -210,8 +206,7 @@ void MasterNode::TellWhatIsNotUsed() const {
   if (folder.empty()) {
     ROS_INFO("no results are kept (out:=FOLDER keeps them)");
   } else {
-    ROS_INFO("results go to %s",
-             Presentable(std::filesystem::absolute(folder).lexically_normal().string()).c_str());
+    ROS_INFO("results go to %s", Presentable(std::filesystem::absolute(folder).lexically_normal().string()).c_str());
   }
 }
 
@@ -308,7 +303,7 @@ int MasterNode::Run() {
   ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
   train_console::Print("{}", train_results::SummaryText(json));
   if (exit_code == train_run::kFailure) train_console::Print("{}", json);  // it may be nowhere else
-  train_console::FinishOutput();  // for people: the result is summary.json
+  train_console::FinishOutput();                                           // for people: the result is summary.json
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
   } else if (!fault.empty()) {
@@ -404,8 +399,8 @@ void MasterNode::AskDriver(train_run::TrainRun& run) {
     try {
       run.Command(commands_.Judge(message, view.exchange));
     } catch (const std::invalid_argument& e) {
-      ROS_WARN("exchange %lu: a command of the driver %s is refused: %s", view.exchange,
-               driver_->name().c_str(), e.what());
+      ROS_WARN("exchange %lu: a command of the driver %s is refused: %s", view.exchange, driver_->name().c_str(),
+               e.what());
       driver_->Refuse(e.what());
     }
   }
@@ -453,8 +448,7 @@ void MasterNode::PublishDiagnostics(const TrainMaster& master, const char* state
   diagnostic_msgs::DiagnosticArray array;
   array.header.stamp.fromSec(master.time_s());
   diagnostic_msgs::DiagnosticStatus status;
-  status.level =
-      late_exchanges_ > 0 ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK;
+  status.level = late_exchanges_ > 0 ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK;
   status.name = ros::this_node::getName() + ": lockstep";
   status.hardware_id = scenario_.params.name;
   status.message = state;
@@ -533,8 +527,7 @@ bool MasterNode::OnGive(train_brake_msgs::GiveCommand::Request& request,
   try {
     response.exchange = commands_.Receive(request.command);
     response.success = true;
-    response.message =
-        fmt::format("given at the start of exchange {} or, in a pause, later", response.exchange);
+    response.message = fmt::format("given at the start of exchange {} or, in a pause, later", response.exchange);
   } catch (const std::invalid_argument& e) {
     response.message = e.what();
   }

@@ -8,8 +8,7 @@
 namespace ltd_master {
 
 RunControl::Reply RunControl::Refusal() const {
-  return {false,
-          ended_ ? fmt::format("the run has ended, at {:.3f} s", simulated_s_) : "the train is not paused"};
+  return {false, ended_ ? fmt::format("the run has ended, at {:.3f} s", simulated_s_) : "the train is not paused"};
 }
 
 RunControl::Reply RunControl::Pause(std::chrono::milliseconds patience) {
@@ -22,11 +21,9 @@ RunControl::Reply RunControl::Pause(std::chrono::milliseconds patience) {
   changed_.notify_all();
   changed_.wait_for(lock, patience, [&] { return !is_moving_ || ended_ || decisions_ != mine; });
   if (ended_) return Refusal();
-  if (decisions_ != mine && !paused_)
-    return {false, fmt::format("resumed again, near {:.3f} s", simulated_s_)};
+  if (decisions_ != mine && !paused_) return {false, fmt::format("resumed again, near {:.3f} s", simulated_s_)};
   if (is_moving_) {
-    return {true, fmt::format("pauses after the exchange that began at {:.3f} s and is still under way",
-                              simulated_s_)};
+    return {true, fmt::format("pauses after the exchange that began at {:.3f} s and is still under way", simulated_s_)};
   }
   return {true, fmt::format("{} at {:.3f} s", stood_still ? "was paused already," : "paused", simulated_s_)};
 }
@@ -50,9 +47,8 @@ RunControl::Reply RunControl::Step(std::uint64_t exchanges) {
   const std::uint64_t decisions = decisions_;
   changed_.notify_all();
   // A pause ends it once the train stands, a resumption at once.
-  changed_.wait(lock, [&] {
-    return completed_ >= end || ended_ || (decisions_ != decisions && !(paused_ && is_moving_));
-  });
+  changed_.wait(lock,
+                [&] { return completed_ >= end || ended_ || (decisions_ != decisions && !(paused_ && is_moving_)); });
   if (completed_ >= end) return {true, ""};
   const std::uint64_t done = completed_ > begin ? completed_ - begin : 0;
   return {false, fmt::format("{} after {} of {} exchanges, at {:.3f} s",

@@ -22,8 +22,7 @@ std::size_t BehindQuotes(const std::string& text, std::size_t begin) {
       ++i;
     }
   }
-  throw std::invalid_argument(
-      fmt::format("set: the quote {} is not closed in: {}", quote, text.substr(begin)));
+  throw std::invalid_argument(fmt::format("set: the quote {} is not closed in: {}", quote, text.substr(begin)));
 }
 
 }  // namespace
@@ -35,8 +34,7 @@ std::vector<std::string> SplitSettings(const std::string& text) {
   char last = '\0';     // character that is not a blank
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
-    const bool begins_value =
-        last == '=' || (!open.empty() && std::string(":,[{").find(last) != std::string::npos);
+    const bool begins_value = last == '=' || (!open.empty() && std::string(":,[{").find(last) != std::string::npos);
     if (open.empty() && IsBlank(c)) {
       if (!setting.empty()) settings.push_back(setting);
       setting.clear();
@@ -57,15 +55,14 @@ std::vector<std::string> SplitSettings(const std::string& text) {
     if (!IsBlank(c)) last = text[end - 1];
     i = end;
   }
-  if (!open.empty())
-    throw std::invalid_argument(fmt::format("set: {} is not closed in: {}", open.back(), text));
+  if (!open.empty()) throw std::invalid_argument(fmt::format("set: {} is not closed in: {}", open.back(), text));
   if (!setting.empty()) settings.push_back(setting);
   for (std::size_t i = 0; i < settings.size(); ++i) {
     if (settings[i].find('=') != std::string::npos) continue;
     const std::string hint = i == 0 ? "" : fmt::format("; a value with blanks needs quotes, as in {}", [&] {
       const std::size_t equals = settings[i - 1].find('=');
-      return fmt::format("{}=\"{} {}\"", settings[i - 1].substr(0, equals),
-                         settings[i - 1].substr(equals + 1), settings[i]);
+      return fmt::format("{}=\"{} {}\"", settings[i - 1].substr(0, equals), settings[i - 1].substr(equals + 1),
+                         settings[i]);
     }());
     throw std::invalid_argument(fmt::format("set: {} must be a path, '=' and a value{}", settings[i], hint));
   }

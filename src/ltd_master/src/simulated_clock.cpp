@@ -56,8 +56,7 @@ std::string OtherPublisher() {
     for (int k = 0; k < topics[i][1].size(); ++k) {
       const std::string node = topics[i][1][k];
       if (node == ros::this_node::getName()) continue;
-      if (train_node::FindRunningNode(node, kPatience).state != train_node::RunningNode::State::kNone)
-        return node;
+      if (train_node::FindRunningNode(node, kPatience).state != train_node::RunningNode::State::kNone) return node;
     }
   }
   return "";
@@ -70,15 +69,14 @@ SimulatedClock::SimulatedClock(ros::NodeHandle& train, bool is_global) : is_glob
   if (is_global) {
     const std::string other = OtherPublisher();
     if (!other.empty()) {
-      throw std::invalid_argument(fmt::format(
-          "{} publishes /clock already, and a ROS master has one simulated time: with global_clock:=false "
-          "this train's time is on {} only",
-          other, train.resolveName("clock")));
+      throw std::invalid_argument(
+          fmt::format("{} publishes /clock already, and a ROS master has one simulated time: with global_clock:=false "
+                      "this train's time is on {} only",
+                      other, train.resolveName("clock")));
     }
     global_ = {kGlobalUse, train.advertise<rosgraph_msgs::Clock>(kGlobal, kQueue, true), IsTrue(kGlobalUse)};
   }
-  own_ = {train.resolveName("use_sim_time"), train.advertise<rosgraph_msgs::Clock>("clock", kQueue, true),
-          false};
+  own_ = {train.resolveName("use_sim_time"), train.advertise<rosgraph_msgs::Clock>("clock", kQueue, true), false};
   TellUse();
 }
 

@@ -51,8 +51,7 @@ TEST(BoundedStream, RefusesWhatIsCutShortOrTooLong) {
   const Bytes bytes = BytesOf(Example());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     StepResponse read;
-    EXPECT_THROW(Read(Bytes(bytes.begin(), bytes.begin() + static_cast<long>(size)), read), std::exception)
-        << size;
+    EXPECT_THROW(Read(Bytes(bytes.begin(), bytes.begin() + static_cast<long>(size)), read), std::exception) << size;
   }
   Bytes longer = bytes;
   longer.push_back(0);

@@ -89,8 +89,7 @@ TEST(LiveCommands, RefusePatchesThatAreNone) {
   scenario.model = train_dynamics::VehicleModel::kTwoD;
   scenario.track.friction_patches = {{100.0, 200.0, 0.1, {}, 4.0}};
   EXPECT_EQ(WhyNot(live, Patch(-50.0, 98.0)), "");
-  EXPECT_EQ(WhyNot(live, Patch(-50.0, 99.0)),
-            "to_m must not lie within a ramp between surfaces of the track");
+  EXPECT_EQ(WhyNot(live, Patch(-50.0, 99.0)), "to_m must not lie within a ramp between surfaces of the track");
   EXPECT_EQ(WhyNot(live, Patch(0.0, kInfinite)), "to_m must be finite, got inf");
   EXPECT_EQ(WhyNot(live, Patch(kNan, 50.0)), "from_m must be finite, got nan");
   EXPECT_EQ(WhyNot(live, Patch(50.0, 50.0)), "to_m must be greater than from_m, 50, got 50");
@@ -99,9 +98,8 @@ TEST(LiveCommands, RefusePatchesThatAreNone) {
   scenario.model = train_dynamics::VehicleModel::kLtd;
   EXPECT_EQ(WhyNot(live, Patch(0.0, 50.0)), "");
   scenario.adhesion_limit = false;
-  EXPECT_EQ(
-      WhyNot(live, Patch(0.0, 50.0)),
-      "kind friction changes nothing: the ltd model leaves out the rail's friction without adhesion_limit");
+  EXPECT_EQ(WhyNot(live, Patch(0.0, 50.0)),
+            "kind friction changes nothing: the ltd model leaves out the rail's friction without adhesion_limit");
 }
 
 TEST(LiveCommands, RefuseAPatchTooManyAtOnce) {

@@ -22,8 +22,7 @@ constexpr int kCount = 3;  // vehicles of each of the two ranks
 class RankMessagesTest : public testing::Test {
  protected:
   /// What the master says of them; empty: nothing.
-  std::string Complaint(const std::function<void(StepResponse&)>& spoil,
-                        const std::string& model = "model=2d") {
+  std::string Complaint(const std::function<void(StepResponse&)>& spoil, const std::string& model = "model=2d") {
     const auto scenario = train_dynamics::config::LoadScenario(
         std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml", {model, "detail_vehicles=[]"});
     RankMessages messages({{"/a", 0, kCount}, {"/b", kCount, kCount}}, 1, scenario.params);
@@ -95,8 +94,7 @@ TEST_F(RankMessagesTest, TakesSlidesOfItsVehiclesOnly) {
             "/b (vehicles 4-6), exchange 4: replied a slide of vehicle 3, which it does not have");
   EXPECT_NE(Complaint([](auto& r) { r.record.slides.assign(5, 4.0); }).find("replied with malformed slides"),
             std::string::npos);
-  EXPECT_NE(Complaint([](auto& r) { r.record.wheelset_work_j.clear(); }).find("wheelset_work_j"),
-            std::string::npos);
+  EXPECT_NE(Complaint([](auto& r) { r.record.wheelset_work_j.clear(); }).find("wheelset_work_j"), std::string::npos);
 }
 
 TEST_F(RankMessagesTest, RefusesArraysOfAnotherSize) {
@@ -130,8 +128,7 @@ TEST_F(RankMessagesTest, NamesWhatIsNotFinite) {
   EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }), of_vehicle_5("shoe_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.wheel_force_n[1] = kNaN; }), of_vehicle_5("wheel_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.creepage[1] = kNaN; }), of_vehicle_5("creepage"));
-  EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }, "model=ltd"),
-            of_vehicle_5("shoe_force_n"));
+  EXPECT_EQ(Complaint([](auto& r) { r.record.shoe_force_n[1] = kNaN; }, "model=ltd"), of_vehicle_5("shoe_force_n"));
   EXPECT_EQ(Complaint([](auto& r) { r.record.dissipated_j.back() = kNaN; }),
             "/b (vehicles 4-6), exchange 4: replied energies that are not finite");
   EXPECT_EQ(Complaint([](auto& r) { r.snapshot = Snapshot(kCount, kNaN); }),

@@ -71,8 +71,7 @@ void Move(RunControl& control, int exchanges, double& simulated_s) {
 TEST(RunControl, StepsAreGivenOneByOneAndOnlyInAPause) {
   RunControl control(true, 0.0);
   EXPECT_FALSE(control.Admit(0.0));
-  std::future<RunControl::Reply> step =
-      std::async(std::launch::async, [&control] { return control.Step(2); });
+  std::future<RunControl::Reply> step = std::async(std::launch::async, [&control] { return control.Step(2); });
   double time_s = 0.0;
   Move(control, 2, time_s);
   EXPECT_TRUE(step.get().success);
@@ -84,8 +83,7 @@ TEST(RunControl, StepsAreGivenOneByOneAndOnlyInAPause) {
 
 TEST(RunControl, AStepThatTheRunCannotDoEndsWithIt) {
   RunControl control(true, 0.0);
-  std::future<RunControl::Reply> step =
-      std::async(std::launch::async, [&control] { return control.Step(3); });
+  std::future<RunControl::Reply> step = std::async(std::launch::async, [&control] { return control.Step(3); });
   double time_s = 0.0;
   Move(control, 2, time_s);
   control.End();
@@ -101,15 +99,13 @@ TEST(RunControl, AStepThatTheRunCannotDoEndsWithIt) {
 
 TEST(RunControl, APauseEndsAStepAndSaysWhereTheTrainStands) {
   RunControl control(true, 0.0);
-  std::future<RunControl::Reply> step =
-      std::async(std::launch::async, [&control] { return control.Step(1000000); });
+  std::future<RunControl::Reply> step = std::async(std::launch::async, [&control] { return control.Step(1000000); });
   double time_s = 0.0;
   Move(control, 4, time_s);
   while (!control.Admit(time_s)) {
   }
   // An exchange is under way: the pause is not reported before it has ended.
-  std::future<RunControl::Reply> pause =
-      std::async(std::launch::async, [&control] { return control.Pause(); });
+  std::future<RunControl::Reply> pause = std::async(std::launch::async, [&control] { return control.Pause(); });
   EXPECT_EQ(std::future_status::timeout, pause.wait_for(std::chrono::milliseconds(50)));
   control.Completed(time_s += 1e-3);
   const RunControl::Reply paused = pause.get(), stepped = step.get();
@@ -130,8 +126,7 @@ TEST(RunControl, APauseDuringAnExchangeThatDoesNotEndSaysSo) {
 
 TEST(RunControl, ResumeEndsAStepAndTheStepSaysSo) {
   RunControl control(true, 0.0);
-  std::future<RunControl::Reply> step =
-      std::async(std::launch::async, [&control] { return control.Step(9); });
+  std::future<RunControl::Reply> step = std::async(std::launch::async, [&control] { return control.Step(9); });
   double time_s = 0.0;
   Move(control, 1, time_s);
   EXPECT_EQ("resumed at 0.001 s", control.Resume().message);
@@ -140,12 +135,10 @@ TEST(RunControl, ResumeEndsAStepAndTheStepSaysSo) {
 
 TEST(RunControl, TwoStepsAtATimeAreDoneOneBehindTheOther) {
   RunControl control(true, 0.0);
-  std::future<RunControl::Reply> first =
-      std::async(std::launch::async, [&control] { return control.Step(2); });
+  std::future<RunControl::Reply> first = std::async(std::launch::async, [&control] { return control.Step(2); });
   double time_s = 0.0;
   Move(control, 1, time_s);
-  std::future<RunControl::Reply> second =
-      std::async(std::launch::async, [&control] { return control.Step(3); });
+  std::future<RunControl::Reply> second = std::async(std::launch::async, [&control] { return control.Step(3); });
   Move(control, 4, time_s);
   EXPECT_TRUE(first.get().success);
   EXPECT_TRUE(second.get().success);

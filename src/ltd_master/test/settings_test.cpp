@@ -30,9 +30,8 @@ TEST(Settings, ValuesHoldQuotedTextListsAndMaps) {
             SplitSettings("description=\"two words\" dt_s=0.001"));
   EXPECT_EQ((Settings{"description='it''s [ here'"}), SplitSettings("description='it''s [ here'"));
   EXPECT_EQ((Settings{R"(description="a \" b")", "x=1"}), SplitSettings(R"(description="a \" b" x=1)"));
-  EXPECT_EQ(
-      (Settings{"commands=[{time_s: 2, kind: emergency}, {time_s: 5, kind: 'full [ service'}]", "x=1"}),
-      SplitSettings("commands=[{time_s: 2, kind: emergency}, {time_s: 5, kind: 'full [ service'}] x=1"));
+  EXPECT_EQ((Settings{"commands=[{time_s: 2, kind: emergency}, {time_s: 5, kind: 'full [ service'}]", "x=1"}),
+            SplitSettings("commands=[{time_s: 2, kind: emergency}, {time_s: 5, kind: 'full [ service'}] x=1"));
   EXPECT_EQ((Settings{"train={base: paper_242, name: Anna's train}"}),
             SplitSettings("train={base: paper_242, name: Anna's train}"));
   EXPECT_EQ((Settings{"description=Anna's", "x=1"}), SplitSettings("description=Anna's x=1"));

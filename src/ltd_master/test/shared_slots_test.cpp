@@ -101,8 +101,7 @@ class SharedSlotsTest : public testing::Test {
     return "readable";
   }
 
-  const std::vector<train_dynamics::Rank> ranks_ = {
-      {"wagon_001", 0, 2}, {"wagon_003", 2, 3}, {"wagon_006", 5, 1}};
+  const std::vector<train_dynamics::Rank> ranks_ = {{"wagon_001", 0, 2}, {"wagon_003", 2, 3}, {"wagon_006", 5, 1}};
   SharedSlots slots_{ranks_, kRun};
   std::vector<Configure> configure_ = std::vector<Configure>(3);
   std::vector<Step> step_ = std::vector<Step>(3);
@@ -204,8 +203,7 @@ TEST_F(SharedSlotsTest, BytesOfAStrangerAreRefused) {
   Process process = Start(0);
   Send();
   process.WriteRaw(process.reply_room() + 1, {});
-  EXPECT_EQ(WhyUnreadable(0),
-            "a message of " + std::to_string(process.reply_room() + 1) + " bytes is too long");
+  EXPECT_EQ(WhyUnreadable(0), "a message of " + std::to_string(process.reply_room() + 1) + " bytes is too long");
   process.WriteRaw(5, {1, 0xff, 0xff, 0xff, 0xff});  // a text of 4 GiB
   EXPECT_NE(WhyUnreadable(0), "readable");
   process.WriteRaw(0, {});

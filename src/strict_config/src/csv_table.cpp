@@ -77,9 +77,8 @@ class CsvLines {
       if (first == std::string::npos || content[first] == '#') continue;
       if (separator_ == '\0') separator_ = SeparatorOf(content);
       Split(content);
-      const bool is_empty =
-          !is_bad_ && cells_.size() <= CsvLimits::kColumns &&
-          std::all_of(cells_.begin(), cells_.end(), [](const auto& cell) { return cell.empty(); });
+      const bool is_empty = !is_bad_ && cells_.size() <= CsvLimits::kColumns &&
+                            std::all_of(cells_.begin(), cells_.end(), [](const auto& cell) { return cell.empty(); });
       if (!is_empty) return true;  // ",,": a row that was deleted in a spreadsheet
     }
     return false;
@@ -99,9 +98,7 @@ class CsvLines {
   }
 
   int line() const { return line_; }
-  const std::vector<std::string>& cells() const {
-    return cells_;
-  }  ///< at most one more than a table may have
+  const std::vector<std::string>& cells() const { return cells_; }  ///< at most one more than a table may have
 
  private:
   static char SeparatorOf(const std::string& header) {
@@ -191,8 +188,7 @@ bool ReadRows(const std::string& file, CsvTable& table, ErrorList& errors, const
       return false;
     }
     const std::vector<std::string>& cells = lines.cells();
-    const bool row_is_closed =
-        cells.size() == columns + 1 && columns < CsvLimits::kColumns && cells.back().empty();
+    const bool row_is_closed = cells.size() == columns + 1 && columns < CsvLimits::kColumns && cells.back().empty();
     if (cells.size() == columns || row_is_closed) {
       row(cells, lines.line());
       continue;
@@ -212,8 +208,7 @@ bool ReadRows(const std::string& file, CsvTable& table, ErrorList& errors, const
 const std::vector<double>* CsvTable::Column(const std::string& name, ErrorList& errors) const {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found != columns.end()) return &values[static_cast<std::size_t>(found - columns.begin())];
-  errors.Add(file, header_line, "",
-             "has no column " + name + KeyHint(name, columns, "column", kListedColumns));
+  errors.Add(file, header_line, "", "has no column " + name + KeyHint(name, columns, "column", kListedColumns));
   return nullptr;
 }
 
@@ -236,8 +231,7 @@ CsvTable ReadCsvTable(const std::string& file, ErrorList& errors) {
   return table;
 }
 
-NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document,
-                    ErrorList& errors) {
+NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document, ErrorList& errors) {
   const std::size_t errors_before = errors.reports();
   CsvTable table;
   auto list = std::make_shared<Node>();

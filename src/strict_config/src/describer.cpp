@@ -9,8 +9,7 @@ constexpr const char* kNotGiven = "not given";
 template <class Numbers>
 std::string ListText(const Numbers& values) {
   std::string text;
-  for (const auto value : values)
-    text += (text.empty() ? "" : ", ") + ShortestDecimal(static_cast<double>(value));
+  for (const auto value : values) text += (text.empty() ? "" : ", ") + ShortestDecimal(static_cast<double>(value));
   return "[" + text + "]";
 }
 
@@ -52,8 +51,7 @@ void Describer::Number(const char* key, double& value, const Range& range, const
   }
 }
 
-void Describer::Number(const char* key, std::optional<double>& value, const Range& range,
-                       const char* meaning) {
+void Describer::Number(const char* key, std::optional<double>& value, const Range& range, const char* meaning) {
   KeyDescription& described = Add(key, KeyDescription::Kind::kNumber, meaning);
   described.range = range;
   if (value) {
@@ -88,15 +86,13 @@ void Describer::Text(const char* key, const std::string& value, const char* mean
   Add(key, KeyDescription::Kind::kText, meaning).default_value = value;
 }
 
-void Describer::Numbers(const char* key, const std::vector<double>& values, const Range& range,
-                        const char* meaning) {
+void Describer::Numbers(const char* key, const std::vector<double>& values, const Range& range, const char* meaning) {
   KeyDescription& described = Add(key, KeyDescription::Kind::kNumbers, meaning);
   described.range = range;
   described.default_value = ListText(values);
 }
 
-void Describer::Integers(const char* key, const std::vector<int>& values, const Range& range,
-                         const char* meaning) {
+void Describer::Integers(const char* key, const std::vector<int>& values, const Range& range, const char* meaning) {
   KeyDescription& described = Add(key, KeyDescription::Kind::kIntegers, meaning);
   described.range = range;
   described.default_value = ListText(values);
@@ -124,9 +120,7 @@ std::vector<KeyDescription> KeyCollection::Finish() const {
   };
   std::vector<KeyDescription> keys = keys_;
   for (KeyDescription& described : keys) {
-    const auto is_known = [&](const Visit& visit) {
-      return called_in(visit, described) != visit.called.end();
-    };
+    const auto is_known = [&](const Visit& visit) { return called_in(visit, described) != visit.called.end(); };
     const auto is_required = [&](const Visit& visit) {
       const auto called = called_in(visit, described);
       return called != visit.called.end() && called->second;
@@ -138,9 +132,8 @@ std::vector<KeyDescription> KeyCollection::Finish() const {
       std::vector<std::string> all{selector.value};
       all.insert(all.end(), selector.others.begin(), selector.others.end());
       for (const std::string& value : all) {
-        const auto visit = std::find_if(visits_.begin() + 1, visits_.end(), [&](const Visit& v) {
-          return v.set == std::make_pair(selector.key, value);
-        });
+        const auto visit = std::find_if(visits_.begin() + 1, visits_.end(),
+                                        [&](const Visit& v) { return v.set == std::make_pair(selector.key, value); });
         const Visit& with = value == selector.value ? visits_.front() : *visit;
         if (is_known(with)) known.values.push_back(value);
         if (is_required(with)) required.values.push_back(value);

@@ -8,8 +8,7 @@ namespace {
 /// Whether a path leads to `other` or to something below it.
 bool LeadsTo(const std::string& path, const std::string& other) {
   if (other.compare(0, path.size(), path) != 0) return false;
-  return path.empty() || other.size() == path.size() || other[path.size()] == '.' ||
-         other[path.size()] == '[';
+  return path.empty() || other.size() == path.size() || other[path.size()] == '.' || other[path.size()] == '[';
 }
 
 /// A path with every index left out, "consist[2].vehicle" as "consist[].vehicle".
@@ -41,8 +40,7 @@ void ErrorList::Add(const std::string& file, int line, const KeyPath& path, cons
   errors_.push_back({order, line, place + ": " + path.text + (path.text.empty() ? "" : " ") + text});
 }
 
-bool ErrorList::Concerns(const std::string& path,
-                         const std::function<bool(const std::string&)>& is_read) const {
+bool ErrorList::Concerns(const std::string& path, const std::function<bool(const std::string&)>& is_read) const {
   if (full()) return true;
   const std::size_t any = path.find("[]");
   const auto is_below_or_above = [&](const std::string& reported) {
@@ -51,8 +49,7 @@ bool ErrorList::Concerns(const std::string& path,
   };
   // What begins like the path up to its first index that is open; then what is above that.
   const std::string begin = path.substr(0, any);
-  for (auto at = paths_.lower_bound(begin); at != paths_.end() && at->compare(0, begin.size(), begin) == 0;
-       ++at) {
+  for (auto at = paths_.lower_bound(begin); at != paths_.end() && at->compare(0, begin.size(), begin) == 0; ++at) {
     if (is_below_or_above(*at)) return true;
   }
   for (std::size_t end = begin.find_last_of(".["); end != std::string::npos && end > 0;

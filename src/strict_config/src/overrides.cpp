@@ -13,8 +13,7 @@ namespace {
 /// Whether the text is keys with optional indices, joined by dots: "a.b[0][1].c".
 bool IsPath(const std::string& text) {
   const auto is_key = [&](std::size_t i) {
-    return i < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '-');
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '-');
   };
   const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
   std::size_t i = 0;

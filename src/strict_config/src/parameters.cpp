@@ -10,8 +10,8 @@ std::string Range::Rule() const {
   const bool has_min = std::isfinite(min);
   const bool has_max = std::isfinite(max);
   if (has_min && has_max) {
-    return "must be in " + std::string(min_open ? "(" : "[") + ShortestDecimal(min) + ", " +
-           ShortestDecimal(max) + (max_open ? ")" : "]");
+    return "must be in " + std::string(min_open ? "(" : "[") + ShortestDecimal(min) + ", " + ShortestDecimal(max) +
+           (max_open ? ")" : "]");
   }
   if (has_min) return (min_open ? "must be > " : "must be >= ") + ShortestDecimal(min);
   if (has_max) return (max_open ? "must be < " : "must be <= ") + ShortestDecimal(max);
@@ -22,8 +22,7 @@ std::string ShortestDecimal(double value) {
   char text[32];
   // 15 significant digits survive a round trip from text, so most numbers of people come back as they were
   // written (100000, where the shortest form of all would be 1e+05).
-  const std::to_chars_result plain =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 15);
+  const std::to_chars_result plain = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 15);
   double back = 0.0;
   std::from_chars(text, plain.ptr, back);
   if (back == value) return std::string(text, plain.ptr);

@@ -66,8 +66,7 @@ NodePtr WithoutBase(const NodePtr& map) {
   auto rest = std::make_shared<Node>(*map);
   rest->under = nullptr;
   const auto is_base = [](const Entry& entry) { return entry.key == "base"; };
-  rest->entries.erase(std::remove_if(rest->entries.begin(), rest->entries.end(), is_base),
-                      rest->entries.end());
+  rest->entries.erase(std::remove_if(rest->entries.begin(), rest->entries.end(), is_base), rest->entries.end());
   return rest;
 }
 
@@ -93,9 +92,8 @@ std::vector<fs::path> PartLibrary::Files() const {
 
 NodePtr PartLibrary::OpenText(const std::string& text, const std::string& label, const KeyPath& path) {
   if (text.size() > YamlLimits::kBytes) {
-    errors_.Add(
-        label, 0, path,
-        "has " + std::to_string(text.size()) + " bytes; the limit is " + std::to_string(YamlLimits::kBytes));
+    errors_.Add(label, 0, path,
+                "has " + std::to_string(text.size()) + " bytes; the limit is " + std::to_string(YamlLimits::kBytes));
     return nullptr;
   }
   if (!IsCleanText(text, label, errors_)) return nullptr;
@@ -109,18 +107,15 @@ NodePtr PartLibrary::Parse(const std::string& text, Document document, const Key
   return nullptr;
 }
 
-NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const KeyPath& path,
-                             FileChain& chain) {
+NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const KeyPath& path, FileChain& chain) {
   if (node->kind == Node::Kind::kScalar) return ResolveReference(node, path, kind, path, chain);
   if (node->kind != Node::Kind::kMap) {
-    node->source.Report(errors_, path,
-                        "must be a map, a file, or a name from " + kind + "/, got " + Describe(*node));
+    node->source.Report(errors_, path, "must be a map, a file, or a name from " + kind + "/, got " + Describe(*node));
     return nullptr;
   }
   const Entry* const base = node->Find("base");
   if (!base && !node->under) return node;
-  const KeyPath base_path =
-      base ? KeyPath(path.text.empty() ? "base" : path.text + ".base", path.part) : path;
+  const KeyPath base_path = base ? KeyPath(path.text.empty() ? "base" : path.text + ".base", path.part) : path;
   const NodePtr reference = base ? base->value : node->under;
   if (reference->kind != Node::Kind::kScalar) {
     base->source.Report(errors_, base_path,
@@ -133,8 +128,7 @@ NodePtr PartLibrary::Resolve(const NodePtr& node, const std::string& kind, const
 
 bool PartLibrary::MayFollow(const Node& reference, const KeyPath& key) {
   if (!reference.source.document->stands_alone) return true;
-  reference.source.Report(errors_, key,
-                          "must be a map, because no files are read here, got " + Describe(reference));
+  reference.source.Report(errors_, key, "must be a map, because no files are read here, got " + Describe(reference));
   return false;
 }
 
@@ -142,8 +136,8 @@ NodePtr PartLibrary::ResolveTable(const NodePtr& reference, const KeyPath& path)
   if (!MayFollow(*reference, path)) return nullptr;
   const fs::path file = Normal(reference->source.document->folder / reference->text);
   if (!Exists(file)) {
-    reference->source.Report(
-        errors_, path, "names the file " + Describe(*reference) + ", but there is no " + DisplayPath(file));
+    reference->source.Report(errors_, path,
+                             "names the file " + Describe(*reference) + ", but there is no " + DisplayPath(file));
     return nullptr;
   }
   const auto [cached, is_new] = files_.try_emplace(file);
@@ -172,8 +166,7 @@ NodePtr PartLibrary::ResolveReference(const NodePtr& reference, const KeyPath& k
     return refuse("includes a file in itself: " + cycle + DisplayPath(file));
   }
   if (chain.size() >= kMaxChain) {
-    return refuse("refers to a file that is reached through more than " + std::to_string(kMaxChain) +
-                  " others");
+    return refuse("refers to a file that is reached through more than " + std::to_string(kMaxChain) + " others");
   }
   chain.push_back(file);
   const NodePtr root = Open(file, path);
@@ -196,8 +189,7 @@ fs::path PartLibrary::Locate(const Node& reference, const KeyPath& key, const st
 
 fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, const std::string& kind) {
   std::vector<fs::path> roots;
-  for (fs::path folder = reference.source.document->search_from; !folder.empty();
-       folder = folder.parent_path()) {
+  for (fs::path folder = reference.source.document->search_from; !folder.empty(); folder = folder.parent_path()) {
     roots.push_back(folder);
     if (folder == folder.parent_path()) break;
   }
@@ -226,8 +218,8 @@ fs::path PartLibrary::LocateName(const Node& reference, const KeyPath& key, cons
 
   std::string text = "names " + Describe(reference);
   if (searched.empty()) {
-    text += ", but there is no folder " + kind + " in " +
-            DisplayPath(reference.source.document->search_from) + " or above it";
+    text += ", but there is no folder " + kind + " in " + DisplayPath(reference.source.document->search_from) +
+            " or above it";
     for (const fs::path& root : search_roots_) text += ", nor in " + DisplayPath(root);
     text += "; or give a file";
     if (!remedy_.empty()) text += ", or " + remedy_;

@@ -32,8 +32,7 @@ bool IsIn(const std::vector<std::string>& words, const std::string& word) {
 /// Where a text holds a key as a whole word, or npos.
 std::size_t FindKey(const std::string& text, const std::string& key) {
   const auto goes_on = [&text](std::size_t i) {
-    return i < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.');
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.');
   };
   std::size_t at = text.find(key);
   while (at != std::string::npos && ((at > 0 && goes_on(at - 1)) || goes_on(at + key.size())))
@@ -67,8 +66,7 @@ std::string Doubt(const std::string& key, const std::string& path, double number
   const std::string unit = SplitUnit(key).unit;
   return "must be " + std::string(is_large ? "at most " : "at least ") +
          ShortestDecimal(is_large ? size.max : size.min) + (unit.empty() ? "" : " " + unit) +
-         " in size: no train has " + (is_large ? "more" : "less") +
-         (unit.empty() ? "" : "; is it in " + unit + "?");
+         " in size: no train has " + (is_large ? "more" : "less") + (unit.empty() ? "" : "; is it in " + unit + "?");
 }
 
 /// A map that holds the reference to a table under a key.
@@ -124,8 +122,7 @@ void Reader::Number(const char* key, double& value, const Range& range, const ch
   }
 }
 
-void Reader::Number(const char* key, std::optional<double>& value, const Range& range,
-                    const char* /*meaning*/) {
+void Reader::Number(const char* key, std::optional<double>& value, const Range& range, const char* /*meaning*/) {
   const Value found = Find(key);
   if (!found) return;
   if (const std::optional<double> number = ReadNumber(found, key, range)) value = number;
@@ -150,8 +147,7 @@ void Reader::Flag(const char* key, bool& value, const char* /*meaning*/) {
   if (is_plain && (found.node->text == "true" || found.node->text == "false")) {
     value = found.node->text == "true";
   } else {
-    found.node->source.Report(session_.errors, found.path,
-                              "must be true or false, got " + Describe(*found.node));
+    found.node->source.Report(session_.errors, found.path, "must be true or false, got " + Describe(*found.node));
   }
 }
 
@@ -168,8 +164,7 @@ void Reader::Text(const char* key, std::string& value, const char* /*meaning*/) 
   }
 }
 
-void Reader::Numbers(const char* key, std::vector<double>& values, const Range& range,
-                     const char* /*meaning*/) {
+void Reader::Numbers(const char* key, std::vector<double>& values, const Range& range, const char* /*meaning*/) {
   const std::optional<Value> list = FindItems(key, "numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();
@@ -178,8 +173,7 @@ void Reader::Numbers(const char* key, std::vector<double>& values, const Range& 
   }
 }
 
-void Reader::Integers(const char* key, std::vector<int>& values, const Range& range,
-                      const char* /*meaning*/) {
+void Reader::Integers(const char* key, std::vector<int>& values, const Range& range, const char* /*meaning*/) {
   const std::optional<Value> list = FindItems(key, "whole numbers", /*may_be_table=*/false);
   if (!list) return;
   values.clear();
@@ -225,8 +219,8 @@ void Reader::NoteNumber(const char* key, double value, bool is_default) {
 }
 
 const Reader::Shown* Reader::FindNumber(const std::string& key) const {
-  const auto found = std::find_if(numbers_.rbegin(), numbers_.rend(),
-                                  [&key](const auto& number) { return number.first == key; });
+  const auto found =
+      std::find_if(numbers_.rbegin(), numbers_.rend(), [&key](const auto& number) { return number.first == key; });
   return found == numbers_.rend() ? nullptr : &found->second;
 }
 
@@ -327,10 +321,9 @@ void Reader::CheckIndices(const KeyPath& list, std::size_t size) {
     // Nine digits are more entries than any list may have, and fit an integer.
     if (rest[0] == '[' && step.size() <= 9 && std::stoul(step) < size) continue;
     given->used = true;
-    given->value->source.Report(
-        session_.errors, list,
-        "has no entry " + step + "; " +
-            (size == 0 ? "it has none" : "its entries are 0 to " + std::to_string(size - 1)));
+    given->value->source.Report(session_.errors, list,
+                                "has no entry " + step + "; " +
+                                    (size == 0 ? "it has none" : "its entries are 0 to " + std::to_string(size - 1)));
   }
 }
 
@@ -369,18 +362,15 @@ Reader::Place Reader::FindGroup(const char* key, Absent absent) {
   const Value found = Find(key);
   if (found) return MapPlace(found);
   const bool is_read = absent == Absent::kReadAsEmpty || !session_.overrides.Below(found.path.text).empty();
-  return {is_read ? Place::State::kMap : Place::State::kAbsent, nullptr, found.source, found.path,
-          place_.chain};
+  return {is_read ? Place::State::kMap : Place::State::kAbsent, nullptr, found.source, found.path, place_.chain};
 }
 
 Reader::Place Reader::FindPart(const char* key, const char* kind, const char* table_key) {
   Value found = Find(key);
-  if (found && table_key != nullptr && IsTableReference(*found.node))
-    found.node = AsMap(found.node, table_key);
+  if (found && table_key != nullptr && IsTableReference(*found.node)) found.node = AsMap(found.node, table_key);
   if (found) return PartPlace(found, kind);
   const bool is_read = !session_.overrides.Below(found.path.text).empty();
-  return {is_read ? Place::State::kMap : Place::State::kAbsent, nullptr, found.source, found.path,
-          place_.chain};
+  return {is_read ? Place::State::kMap : Place::State::kAbsent, nullptr, found.source, found.path, place_.chain};
 }
 
 std::optional<std::vector<Reader::Place>> Reader::FindList(const char* key, const char* kind) {
@@ -421,8 +411,7 @@ void Reader::Finish() {
     return std::any_of(rule.read.begin(), rule.read.end(),
                        [&](const std::string& path) { return session_.errors.Concerns(path, is_read); });
   };
-  broken_rules_.erase(std::remove_if(broken_rules_.begin(), broken_rules_.end(), is_void),
-                      broken_rules_.end());
+  broken_rules_.erase(std::remove_if(broken_rules_.begin(), broken_rules_.end(), is_void), broken_rules_.end());
   for (const BrokenRule& rule : broken_rules_) rule.source.Report(session_.errors, rule.path, rule.text);
   broken_rules_.clear();
 }
@@ -451,9 +440,7 @@ bool Reader::Afford(const Place& place) {
   return false;
 }
 
-KeyPath Reader::Path(const std::string& key) const {
-  return {Joined(place_.path.text, key), place_.path.part};
-}
+KeyPath Reader::Path(const std::string& key) const { return {Joined(place_.path.text, key), place_.path.part}; }
 
 Reader::Place Reader::RootPlace(ReadSession& session, const std::string& file, const LoadOptions& options,
                                 const char* table_key) {

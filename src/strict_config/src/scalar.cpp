@@ -98,8 +98,8 @@ std::string UnitOf(const std::vector<std::string>& words, std::size_t first) {
       wants_unit = true;
       continue;
     }
-    const auto known = std::find_if(std::begin(kUnits), std::end(kUnits),
-                                    [&](const Unit& u) { return u.first == words[i]; });
+    const auto known =
+        std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return u.first == words[i]; });
     if (known == std::end(kUnits) || !(wants_unit || i == first)) return "";
     unit += known->second;
     wants_unit = false;
@@ -173,8 +173,7 @@ std::string NumberRule(const std::string& text, bool quoted, const std::string& 
   }
   if (rest[0] == ',') return "must be a plain number, with a point for decimals";
   if (rest[0] == '_') return "must be a plain number, without separators";
-  const auto after_spaces =
-      static_cast<unsigned char>(rest[std::min(rest.find_first_not_of(' '), rest.size() - 1)]);
+  const auto after_spaces = static_cast<unsigned char>(rest[std::min(rest.find_first_not_of(' '), rest.size() - 1)]);
   const bool is_unit = std::isalpha(after_spaces) || after_spaces == '%' || after_spaces >= 0x80;
   if (!is_unit) return "must be a number";
   const std::string unit = SplitUnit(key).unit;

@@ -72,8 +72,7 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
   const std::vector<std::string> my_runs = Runs(mine);
   std::string nearest;
   std::size_t smallest = 0;
-  const auto consider = [&](const std::string& word, std::optional<std::size_t> distance,
-                            std::size_t penalty) {
+  const auto consider = [&](const std::string& word, std::optional<std::size_t> distance, std::size_t penalty) {
     if (!distance) return;
     const std::size_t cost = 2 * *distance + penalty;
     if (!nearest.empty() && cost >= smallest) return;
@@ -89,13 +88,12 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
   return nearest;
 }
 
-std::string KeyHint(const std::string& written, const std::vector<std::string>& known,
-                    const std::string& noun, std::size_t max_listed) {
+std::string KeyHint(const std::string& written, const std::vector<std::string>& known, const std::string& noun,
+                    std::size_t max_listed) {
   const std::string mine = Normal(written);
   const std::string stem = SplitUnit(mine).stem;
-  const auto same = std::find_if(known.begin(), known.end(), [&](const std::string& word) {
-    return word != mine && SplitUnit(word).stem == stem;
-  });
+  const auto same = std::find_if(known.begin(), known.end(),
+                                 [&](const std::string& word) { return word != mine && SplitUnit(word).stem == stem; });
   if (same != known.end()) {
     const std::string unit = SplitUnit(*same).unit;
     return "; the " + noun + " is " + *same + (unit.empty() ? ", without a unit" : ", in " + unit);

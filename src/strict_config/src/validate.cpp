@@ -29,8 +29,7 @@ void Validator::Numbers(const char* key, const std::vector<double>& values, cons
   }
 }
 
-void Validator::Integers(const char* key, const std::vector<int>& values, const Range& range,
-                         const char* /*meaning*/) {
+void Validator::Integers(const char* key, const std::vector<int>& values, const Range& range, const char* /*meaning*/) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (range.Contains(values[i])) continue;
     Report(key + ("[" + std::to_string(i) + "]"), range.Rule() + ", got " + std::to_string(values[i]));
@@ -41,9 +40,7 @@ void Validator::Check(bool ok, const std::string& key, const std::string& rule, 
   if (!ok && errors_.size() == first_error_) Report(key, rule);
 }
 
-void Validator::Report(const std::string& key, const std::string& rule) {
-  errors_.push_back(path_ + key + " " + rule);
-}
+void Validator::Report(const std::string& key, const std::string& rule) { errors_.push_back(path_ + key + " " + rule); }
 
 void ThrowIfAny(const std::vector<std::string>& errors) {
   if (errors.empty()) return;

@@ -66,9 +66,7 @@ std::string Flow(const Node& node) {
   return text;
 }
 
-bool IsScalar(const NodePtr& node) {
-  return node->kind == Node::Kind::kScalar || node->kind == Node::Kind::kNull;
-}
+bool IsScalar(const NodePtr& node) { return node->kind == Node::Kind::kScalar || node->kind == Node::Kind::kNull; }
 
 /// Whether a value stands on the line of its key.
 bool IsInline(const Node& node) {
@@ -77,8 +75,7 @@ bool IsInline(const Node& node) {
 }
 
 bool IsShortMap(const Node& node, std::size_t indent) {
-  return std::all_of(node.entries.begin(), node.entries.end(),
-                     [](const Entry& e) { return IsScalar(e.value); }) &&
+  return std::all_of(node.entries.begin(), node.entries.end(), [](const Entry& e) { return IsScalar(e.value); }) &&
          indent + Flow(node).size() <= kLineLength;
 }
 
@@ -123,23 +120,19 @@ void Writer::Number(const char* key, double value, const Range&, const char* /*m
 void Writer::Integer(const char* key, int value, const Range&, const char* /*meaning*/) {
   Add(key, *Scalar(std::to_string(value)));
 }
-void Writer::Flag(const char* key, bool value, const char* /*meaning*/) {
-  Add(key, *Scalar(value ? "true" : "false"));
-}
+void Writer::Flag(const char* key, bool value, const char* /*meaning*/) { Add(key, *Scalar(value ? "true" : "false")); }
 void Writer::Text(const char* key, const std::string& value, const char* /*meaning*/) {
   Add(key, *Scalar(value, !IsPlain(value)));
 }
 
-void Writer::Numbers(const char* key, const std::vector<double>& values, const Range&,
-                     const char* /*meaning*/) {
+void Writer::Numbers(const char* key, const std::vector<double>& values, const Range&, const char* /*meaning*/) {
   Node list;
   list.kind = Node::Kind::kList;
   for (const double value : values) list.items.push_back(Scalar(ShortestDecimal(value)));
   Add(key, std::move(list));
 }
 
-void Writer::Integers(const char* key, const std::vector<int>& values, const Range&,
-                      const char* /*meaning*/) {
+void Writer::Integers(const char* key, const std::vector<int>& values, const Range&, const char* /*meaning*/) {
   Node list;
   list.kind = Node::Kind::kList;
   for (const int value : values) list.items.push_back(Scalar(std::to_string(value)));

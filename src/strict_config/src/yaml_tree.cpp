@@ -134,8 +134,7 @@ class TreeBuilder : public YAML::EventHandler {
     return {path + (path.empty() ? "" : ".") + key, root_path_.text.size()};
   }
 
-  void StartCollection(Node::Kind kind, const YAML::Mark& mark, const std::string& tag,
-                       YAML::anchor_t anchor) {
+  void StartCollection(Node::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     // An open bracket on the last line also comes as a key.
     RefuseAsKey(mark, "has a list or map in the place of a key (is a bracket left open?)");
     RefuseTag(mark, tag);
@@ -215,8 +214,7 @@ int LineWithTab(const std::string& text) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::size_t first = std::min(text.find_first_not_of(" \t\r", begin), end);
     const bool has_content = first < end && text[first] != '#';
-    if (has_content &&
-        std::string_view(text).substr(begin, first - begin).find('\t') != std::string_view::npos) {
+    if (has_content && std::string_view(text).substr(begin, first - begin).find('\t') != std::string_view::npos) {
       return line;
     }
     begin = end + 1;
@@ -233,8 +231,8 @@ const Entry* Node::Find(const std::string& key) const {
   return nullptr;
 }
 
-NodePtr ParseYaml(const std::string& text, const std::shared_ptr<const Document>& document,
-                  const KeyPath& root_path, ErrorList& errors) {
+NodePtr ParseYaml(const std::string& text, const std::shared_ptr<const Document>& document, const KeyPath& root_path,
+                  ErrorList& errors) {
   const auto refuse = [&](int line, const std::string& reason) {
     Source{document, line}.Report(errors, "", reason);
     return nullptr;
@@ -302,8 +300,7 @@ std::string Printable(const std::string& text) {
   constexpr std::size_t kShown = 80;
   std::size_t length = std::min(text.size(), kShown);
   // Not to cut within a character of UTF-8.
-  while (length > 0 && length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0u) == 0x80u)
-    --length;
+  while (length > 0 && length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0u) == 0x80u) --length;
   std::string printable;
   for (const char c : text.substr(0, length)) {
     const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;

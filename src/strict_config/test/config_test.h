@@ -163,8 +163,7 @@ class ConfigTest : public ::testing::Test {
 
   std::string WithoutFolder(std::string text) const {
     const std::string prefix = root.string() + "/";
-    for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;)
-      text.erase(at, prefix.size());
+    for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;) text.erase(at, prefix.size());
     return text;
   }
 
@@ -208,8 +207,7 @@ class PartsTest : public ConfigTest {
     ConfigTest::SetUp();
     Put("couplers/f_type.yaml", "slack_m: 0.01\npreload_n: 100\nstiffness_n_per_m: [1, 2]\n");
     Put("couplers/g_type.yaml", "base: f_type\nslack_m: 0.02\nstiffness_n_per_m: [3]\n");
-    Put("vehicles/wagon.yaml",
-        "name: wagon\nmass_kg: 100000\ncontact: {friction_coefficient: 0.2}\ncoupler: f_type\n");
+    Put("vehicles/wagon.yaml", "name: wagon\nmass_kg: 100000\ncontact: {friction_coefficient: 0.2}\ncoupler: f_type\n");
   }
 };
 

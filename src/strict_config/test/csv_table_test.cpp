@@ -38,12 +38,11 @@ TEST_F(CsvTest, ErrorsNameTheirLines) {
   EXPECT_EQ(ErrorsOfTable("a\n" + std::string(20000, ',')),
             "t.csv:2: has more than 10000 values, but the header names 1 columns");
   EXPECT_EQ(ErrorsOfTable(std::string("a\n\0", 3)), "t.csv:2: is not a text file (it contains a zero byte)");
-  EXPECT_EQ(
-      ErrorsOfTable("a,b\n\"1,2\n3,\"4\" 5\n"),
-      "t.csv:2: has a quote that does not end, or text behind its end: \"1,2 (a quote within quotes is "
-      "written twice)\n"
-      "t.csv:3: has a quote that does not end, or text behind its end: \"4\" 5 (a quote within quotes is "
-      "written twice)");
+  EXPECT_EQ(ErrorsOfTable("a,b\n\"1,2\n3,\"4\" 5\n"),
+            "t.csv:2: has a quote that does not end, or text behind its end: \"1,2 (a quote within quotes is "
+            "written twice)\n"
+            "t.csv:3: has a quote that does not end, or text behind its end: \"4\" 5 (a quote within quotes is "
+            "written twice)");
   ReadCsvTable((root / "none.csv").string(), found = ErrorList());
   EXPECT_EQ(Errors(), "none.csv: does not exist");
 }

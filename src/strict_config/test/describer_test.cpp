@@ -81,9 +81,9 @@ std::string Conditions(const std::vector<KeyCondition>& conditions) {
 TEST(Describer, FindsTheKeysOfAllAlternativesInTheirOrder) {
   std::vector<std::string> keys;
   for (const KeyDescription& described : DescribeKeys<Cart>()) keys.push_back(described.key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"name", "law", "stiffness_n_per_m", "damping_ns_per_m", "mass_kg",
-                                            "wheel", "axles", "middle_m", "braked", "brake_n", "spare", "row",
-                                            "more", "shares"}));
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"name", "law", "stiffness_n_per_m", "damping_ns_per_m", "mass_kg", "wheel",
+                                      "axles", "middle_m", "braked", "brake_n", "spare", "row", "more", "shares"}));
 }
 
 TEST(Describer, TellsWithWhichOthersAKeyIsKnown) {
@@ -168,8 +168,7 @@ TEST(Describer, DescribesOneKeyForTwoStructsTwice) {
   EXPECT_EQ(keys[2].key, "sources");
   std::string text;
   for (const KeyDescription& described : {keys[1], keys[2]})
-    text += described.meaning + " with " + Conditions(described.known_with) + " " +
-            described.keys.back().key + ";";
+    text += described.meaning + " with " + Conditions(described.known_with) + " " + described.keys.back().key + ";";
   EXPECT_TRUE(text == "wheels with law one radius_m;needs with law two speed_mps;" ||
               text == "needs with law two speed_mps;wheels with law one radius_m;")
       << text;

@@ -6,8 +6,7 @@ namespace strict_config {
 namespace {
 
 TEST_F(PartsTest, OverridesReachEverywhere) {
-  Put("s.yaml",
-      "initial_speed_kmh: x\nconsist: [{vehicle: wagon}, {vehicle: wagon}]\ncommands: [{time_s: 1}]\n");
+  Put("s.yaml", "initial_speed_kmh: x\nconsist: [{vehicle: wagon}, {vehicle: wagon}]\ncommands: [{time_s: 1}]\n");
   LoadOptions options;
   options.overrides = {"initial_speed_kmh=70",
                        "consist[1].vehicle.coupler.slack_m=0.5",
@@ -37,8 +36,7 @@ TEST_F(PartsTest, WrongOverridesNameThemselves) {
   EXPECT_EQ(ErrorsOf(text, {"tail.slack_m=-1"}), "--set tail.slack_m=-1: tail.slack_m must be >= 0, got -1");
   EXPECT_EQ(ErrorsOf(text, {"tail.slack_mm=10"}),
             "--set tail.slack_mm=10: tail.slack_mm is not a known key; the key is slack_m, in m");
-  EXPECT_EQ(ErrorsOf(text, {"tial.slack_m=10"}),
-            "--set tial.slack_m=10: tial is not a known key; did you mean tail?");
+  EXPECT_EQ(ErrorsOf(text, {"tial.slack_m=10"}), "--set tial.slack_m=10: tial is not a known key; did you mean tail?");
   EXPECT_EQ(ErrorsOf(text, {"commands[2].time_s=1"}),
             "--set commands[2].time_s=1: commands has no entry 2; its entries are 0 to 1");
   EXPECT_EQ(ErrorsOf(text, {"commands[99999999999999999999].time_s=1"}),
@@ -50,16 +48,14 @@ TEST_F(PartsTest, WrongOverridesNameThemselves) {
   EXPECT_EQ(ErrorsOf(text, {"record.x=1"}), "--set record.x=1: record.x names no value of the configuration");
   EXPECT_EQ(ErrorsOf(text, {"record="}), "--set record=: record must be true or false, got nothing");
   EXPECT_EQ(ErrorsOf(text, {"record"}), "--set record: must be a path, '=' and a value, as in name=mine");
-  for (const char* path :
-       {"=1", ".a=1", "a.=1", "a..b=1", "a[=1", "a[x]=1", "a[]=1", "a]=1", "a b=1", "[0]=1"}) {
+  for (const char* path : {"=1", ".a=1", "a.=1", "a..b=1", "a[=1", "a[x]=1", "a[]=1", "a]=1", "a b=1", "[0]=1"}) {
     EXPECT_NE(ErrorsOf(text, {path}).find("must be a path, '=' and a value"), std::string::npos) << path;
   }
   EXPECT_EQ(ErrorsOf(text, {"detailed=[1"}),
             "--set detailed=[1: has a list or map in the place of a key (is a bracket left open?)");
-  EXPECT_EQ(
-      ErrorsOf(text, {"tail=h_type"}),
-      "--set tail=h_type: tail names 'h_type', but there is no h_type.yaml in couplers; did you mean f_type? "
-      "(there: f_type, g_type)");
+  EXPECT_EQ(ErrorsOf(text, {"tail=h_type"}),
+            "--set tail=h_type: tail names 'h_type', but there is no h_type.yaml in couplers; did you mean f_type? "
+            "(there: f_type, g_type)");
 }
 
 TEST_F(PartsTest, OverridesAfterOtherErrorsAreNotBlamed) {

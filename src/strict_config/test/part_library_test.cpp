@@ -18,8 +18,7 @@ TEST_F(PartsTest, ByNameFromSiblingFolders) {
 }
 
 TEST_F(PartsTest, ByFileRelativeToTheReference) {
-  Put("else/where/s.yaml",
-      "consist:\n  - vehicle: ../w.yaml\nspare_couplers: [../../couplers/f_type.yaml, f_type]\n");
+  Put("else/where/s.yaml", "consist:\n  - vehicle: ../w.yaml\nspare_couplers: [../../couplers/f_type.yaml, f_type]\n");
   Put("else/w.yaml", "mass_kg: 5\ncoupler: c.yml\n");
   Put("else/c.yml", "slack_m: 0.5\n");
   const Scenario s = LoadFile<Scenario>("else/where/s.yaml");
@@ -52,22 +51,20 @@ TEST_F(PartsTest, UnknownReferences) {
   options.search_roots = {root / "share"};
   options.search_remedy = "set MY_PARTS to a folder of parts";
   LoadFile<Scenario>("scenarios/s.yaml", options);
-  EXPECT_EQ(
-      Errors(),
-      "scenarios/s.yaml:1: tail names 'f_typ', but there is no f_typ.yaml in couplers, share/couplers; "
-      "did you mean f_type? (there: f_type, g_type, h_type)\n"
-      "scenarios/s.yaml:2: spare_couplers[0] names the file 'x/y.yaml', but there is no scenarios/x/y.yaml\n"
-      "scenarios/s.yaml:2: spare_couplers[1] must be a map, a file, or a name from couplers/, got 'a b'\n"
-      "scenarios/s.yaml:2: spare_couplers[2] must be a map, a file, or a name from couplers/, got ''");
+  EXPECT_EQ(Errors(),
+            "scenarios/s.yaml:1: tail names 'f_typ', but there is no f_typ.yaml in couplers, share/couplers; "
+            "did you mean f_type? (there: f_type, g_type, h_type)\n"
+            "scenarios/s.yaml:2: spare_couplers[0] names the file 'x/y.yaml', but there is no scenarios/x/y.yaml\n"
+            "scenarios/s.yaml:2: spare_couplers[1] must be a map, a file, or a name from couplers/, got 'a b'\n"
+            "scenarios/s.yaml:2: spare_couplers[2] must be a map, a file, or a name from couplers/, got ''");
 
   Put("scenarios/a.yaml", "mass_kg: 1\nparts: [b]\n");
   LoadFile<Assembly>("scenarios/a.yaml", options);
-  EXPECT_EQ(
-      Errors(),
-      "scenarios/a.yaml:2: parts[0] names 'b', but there is no folder assemblies in scenarios or above it, "
-      "nor in " +
-          WithoutFolder(options.search_roots[0].string()) +
-          "; or give a file, or set MY_PARTS to a folder of parts");
+  EXPECT_EQ(Errors(),
+            "scenarios/a.yaml:2: parts[0] names 'b', but there is no folder assemblies in scenarios or above it, "
+            "nor in " +
+                WithoutFolder(options.search_roots[0].string()) +
+                "; or give a file, or set MY_PARTS to a folder of parts");
 }
 
 TEST_F(PartsTest, ErrorsInAPartNameItsFileAndTheWholePath) {

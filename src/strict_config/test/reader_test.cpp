@@ -38,8 +38,7 @@ TEST_F(ConfigTest, ReadsEveryVerb) {
 TEST_F(ConfigTest, NumbersAreStrict) {
   EXPECT_EQ(ErrorsOf<Command>("time_s: -0.4\n"), "a.yaml:1: time_s must be >= 0, got -0.4");
   EXPECT_EQ(ErrorsOf<Command>("\n\ntime_s: .nan\n"), "a.yaml:3: time_s must be a finite number, got '.nan'");
-  EXPECT_EQ(ErrorsOf<Command>("time_s: \"80\"\n"),
-            "a.yaml:1: time_s must be a number without quotes, got '80'");
+  EXPECT_EQ(ErrorsOf<Command>("time_s: \"80\"\n"), "a.yaml:1: time_s must be a number without quotes, got '80'");
   EXPECT_EQ(ErrorsOf<Command>("time_s: 3 s\n"),
             "a.yaml:1: time_s must be a plain number in s (the unit is in the key), got '3 s'");
   EXPECT_EQ(ErrorsOf<Command>("time_s: true\n"), "a.yaml:1: time_s must be a number, got 'true'");
@@ -52,8 +51,7 @@ TEST_F(ConfigTest, NumbersAreStrict) {
 TEST_F(ConfigTest, IntegersAreWhole) {
   EXPECT_EQ(Read<Stages>("stages: 3.0\n").stages, 3);
   EXPECT_EQ(ErrorsOf<Stages>("stages: 2.5\n"), "a.yaml:1: stages must be a whole number, got 2.5");
-  EXPECT_EQ(ErrorsOf<Stages>("stages: 1e10\n"),
-            "a.yaml:1: stages must be within the range of an integer, got 1e10");
+  EXPECT_EQ(ErrorsOf<Stages>("stages: 1e10\n"), "a.yaml:1: stages must be within the range of an integer, got 1e10");
   EXPECT_EQ(ErrorsOf<Stages>("stages: 0\n"), "a.yaml:1: stages must be > 0, got 0");
   EXPECT_EQ(ErrorsOf<Stages>("{}\n"), "a.yaml:1: stages is missing (must be > 0)");
 }
@@ -67,23 +65,20 @@ TEST_F(ConfigTest, OtherTypesAreStrict) {
   EXPECT_EQ(ErrorsOf("commands:\n  - 5\n"), "a.yaml:2: commands[0] must be a map, got 5");
   EXPECT_EQ(ErrorsOf("commands:\n  - ~\n"), "a.yaml:2: commands[0] must be a map, got nothing");
   EXPECT_EQ(ErrorsOf("patch: low\n"), "a.yaml:1: patch must be a map, got 'low'");
-  EXPECT_EQ(ErrorsOf("tail: [1]\n"),
-            "a.yaml:1: tail must be a map, a file, or a name from couplers/, got a list");
+  EXPECT_EQ(ErrorsOf("tail: [1]\n"), "a.yaml:1: tail must be a map, a file, or a name from couplers/, got a list");
   EXPECT_EQ(ErrorsOf<Vehicle>("mass_kg: 1\ncoupler: {slack_m: 0}\nname: [a]\n"),
             "a.yaml:3: name must be text, got a list");
   EXPECT_EQ(ErrorsOf<Vehicle>("mass_kg: 1\ncoupler: {slack_m: 0}\ncontact:\n"),
             "a.yaml:3: contact must be a map, got nothing");
   EXPECT_EQ(ErrorsOf<Coupler>("slack_m: 0\nkind: draft_gaer\n"),
             "a.yaml:2: kind must be one of draft_gear, draw_bar, got 'draft_gaer'; did you mean draft_gear?");
-  EXPECT_EQ(ErrorsOf<Coupler>("slack_m: 0\nkind: 3\n"),
-            "a.yaml:2: kind must be one of draft_gear, draw_bar, got 3");
+  EXPECT_EQ(ErrorsOf<Coupler>("slack_m: 0\nkind: 3\n"), "a.yaml:2: kind must be one of draft_gear, draw_bar, got 3");
 }
 
 TEST_F(ConfigTest, MissingValuesPointToTheirMap) {
-  EXPECT_EQ(
-      ErrorsOf("consist:\n  - count: 1\n    vehicle:\n      name: a\n"),
-      "a.yaml:3: consist[0].vehicle.mass_kg is missing (must be > 0)\n"
-      "a.yaml:3: consist[0].vehicle.coupler is missing (must be a map, a file, or a name from couplers/)");
+  EXPECT_EQ(ErrorsOf("consist:\n  - count: 1\n    vehicle:\n      name: a\n"),
+            "a.yaml:3: consist[0].vehicle.mass_kg is missing (must be > 0)\n"
+            "a.yaml:3: consist[0].vehicle.coupler is missing (must be a map, a file, or a name from couplers/)");
   EXPECT_EQ(ErrorsOf("consist:\n  - count: 1\n"),
             "a.yaml:2: consist[0].vehicle is missing (must be a map, a file, or a name from vehicles/)");
 }
@@ -145,22 +140,20 @@ struct Tram {
 TEST_F(ConfigTest, RulesAreJudgedWhateverElseIsWrong) {
   Put("controllers/slow.yaml", "period_s: 0.01\n");
   // Besides an entry of the same list, a key of the same part, and a part that is not there.
-  EXPECT_EQ(
-      ErrorsOf<Tram>("cars:\n"
-                     "- {seats: 5, controller: {period_s: 0.01, gain: -1}}\n"
-                     "- {seats: 5, controller: quick}\n"
-                     "most_seats: 9\n"
-                     "speed: 3\n"),
-      "a.yaml:2: cars[0].controller.gain must be > 0, got -1\n"
-      "a.yaml:2: cars[0].controller.period_s must be at least dt_s (0.1, default), got 0.01\n"
-      "a.yaml:3: cars[1].controller names 'quick', but there is no quick.yaml in controllers (there: slow)\n"
-      "a.yaml:4: most_seats must be at least the seats of all, got 9\n"
-      "a.yaml:5: speed is not a known key; known keys: dt_s, most_seats, cars");
+  EXPECT_EQ(ErrorsOf<Tram>("cars:\n"
+                           "- {seats: 5, controller: {period_s: 0.01, gain: -1}}\n"
+                           "- {seats: 5, controller: quick}\n"
+                           "most_seats: 9\n"
+                           "speed: 3\n"),
+            "a.yaml:2: cars[0].controller.gain must be > 0, got -1\n"
+            "a.yaml:2: cars[0].controller.period_s must be at least dt_s (0.1, default), got 0.01\n"
+            "a.yaml:3: cars[1].controller names 'quick', but there is no quick.yaml in controllers (there: slow)\n"
+            "a.yaml:4: most_seats must be at least the seats of all, got 9\n"
+            "a.yaml:5: speed is not a known key; known keys: dt_s, most_seats, cars");
   // Void by what they read: a number of one entry, an entry that cannot be read, a number beside the list.
-  EXPECT_EQ(
-      ErrorsOf<Tram>("cars:\n- {seats: 5, controller: slow}\n- {seats: x, controller: slow}\nmost_seats: 2\n"
-                     "dt_s: x\n"),
-      "a.yaml:3: cars[1].seats must be a number, got 'x'\na.yaml:5: dt_s must be a number, got 'x'");
+  EXPECT_EQ(ErrorsOf<Tram>("cars:\n- {seats: 5, controller: slow}\n- {seats: x, controller: slow}\nmost_seats: 2\n"
+                           "dt_s: x\n"),
+            "a.yaml:3: cars[1].seats must be a number, got 'x'\na.yaml:5: dt_s must be a number, got 'x'");
   EXPECT_EQ(ErrorsOf<Tram>("dt_s: 1e-3\ncars:\n- {seats: 5, controller: slow}\n- 7\nmost_seats: 2\n"),
             "a.yaml:4: cars[1] must be a map, got 7");
 }
@@ -198,8 +191,7 @@ TEST_F(ConfigTest, PartsThatUnfoldWithoutBoundAreRefused) {
     list += "]\n";
   }
   LoadFile<Assembly>("assemblies/l3.yaml");
-  EXPECT_NE(Errors().find("unfolds, through its references, to more values than are read"),
-            std::string::npos);
+  EXPECT_NE(Errors().find("unfolds, through its references, to more values than are read"), std::string::npos);
   EXPECT_LT(found.size(), 10u);
 }
 

@@ -7,9 +7,8 @@ namespace {
 
 TEST(Number, AcceptsPlainDecimals) {
   const std::pair<const char*, double> numbers[] = {
-      {"0", 0.0},   {"-3", -3.0}, {"+4", 4.0},       {"0.5", 0.5}, {".5", 0.5},
-      {"2.", 2.0},  {"1e8", 1e8}, {"1e-3", 1e-3},    {"1E3", 1e3}, {"1.5e+6", 1.5e6},
-      {"-0", -0.0}, {"0e0", 0.0}, {"5e-324", 5e-324}};
+      {"0", 0.0},     {"-3", -3.0}, {"+4", 4.0},       {"0.5", 0.5}, {".5", 0.5},  {"2.", 2.0},       {"1e8", 1e8},
+      {"1e-3", 1e-3}, {"1E3", 1e3}, {"1.5e+6", 1.5e6}, {"-0", -0.0}, {"0e0", 0.0}, {"5e-324", 5e-324}};
   for (const auto& [text, value] : numbers) {
     const std::optional<double> parsed = ParseNumber(text);
     ASSERT_TRUE(parsed) << text;
@@ -19,9 +18,9 @@ TEST(Number, AcceptsPlainDecimals) {
 }
 
 TEST(Number, RefusesEverythingElse) {
-  for (const char* text : {"",     "+",   "-",     ".",        "e5",   "1e",    "1e+",   "--1", "+-1",
-                           "1 ",   " 1",  "1.2.3", "0x10",     "010",  "00",    "1_000", "1,5", "nan",
-                           ".nan", "inf", "-.inf", "Infinity", "true", "1e999", "1:30",  "1f"}) {
+  for (const char* text :
+       {"",    "+",  "-",     ".",   "e5",  "1e",   "1e+", "--1",   "+-1",      "1 ",   " 1",    "1.2.3", "0x10",
+        "010", "00", "1_000", "1,5", "nan", ".nan", "inf", "-.inf", "Infinity", "true", "1e999", "1:30",  "1f"}) {
     EXPECT_FALSE(ParseNumber(text)) << text;
   }
 }

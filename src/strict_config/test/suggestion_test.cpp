@@ -6,9 +6,8 @@ namespace strict_config {
 namespace {
 
 TEST(Suggestion, NearestOfTheKnownWords) {
-  const std::vector<std::string> known{
-      "friction_coefficient", "wheel_radius_m", "wheelbase_m", "mass_kg",
-      "initial_speed_kmh",    "duration_s",     "dt_s",        "exchange_interval_s"};
+  const std::vector<std::string> known{"friction_coefficient", "wheel_radius_m", "wheelbase_m", "mass_kg",
+                                       "initial_speed_kmh",    "duration_s",     "dt_s",        "exchange_interval_s"};
   EXPECT_EQ(Nearest("frction", known), "friction_coefficient");
   EXPECT_EQ(Nearest("friction_coeficient", known), "friction_coefficient");
   EXPECT_EQ(Nearest("coefficient", known), "friction_coefficient");

@@ -25,8 +25,7 @@ TEST_F(ConfigTest, FilesThatCannotBeRead) {
 }
 
 TEST_F(ConfigTest, CarriageReturnsAloneAreNoLineEnds) {
-  const std::string rule =
-      "has a carriage return without a line feed; save it with the line ends of Unix or Windows";
+  const std::string rule = "has a carriage return without a line feed; save it with the line ends of Unix or Windows";
   EXPECT_EQ(ErrorsOf("consist:\r  - vehicle: {mass_kg: 1}\r"), "a.yaml:1: " + rule);
   EXPECT_EQ(ErrorsOf("consist: []\r\n# a\rb\r\n"), "a.yaml:2: " + rule);
   ErrorList errors;
@@ -35,18 +34,15 @@ TEST_F(ConfigTest, CarriageReturnsAloneAreNoLineEnds) {
 }
 
 TEST_F(ConfigTest, TextsMayNotCommandTerminals) {
-  for (const std::string escape :
-       {"\\e[31m", "\\0", "\\a", "\\x7f", "\\x9b2J", "\\u202e", "\\u2066", "\\r"}) {
+  for (const std::string escape : {"\\e[31m", "\\0", "\\a", "\\x7f", "\\x9b2J", "\\u202e", "\\u2066", "\\r"}) {
     const std::string errors = ErrorsOf("consist:\n  - vehicle: {name: \"a" + escape + "b\"}\n");
-    EXPECT_NE(
-        errors.find("a.yaml:2: consist[0].vehicle.name must be text without control characters, got 'a"),
-        std::string::npos)
+    EXPECT_NE(errors.find("a.yaml:2: consist[0].vehicle.name must be text without control characters, got 'a"),
+              std::string::npos)
         << escape << ": " << errors;
     EXPECT_EQ(errors.find('\0'), std::string::npos) << "cut there by what takes C strings";
   }
   for (const std::string escape : {"\\n", "\\t", "\\xfc", "\\u00a0", "\\u202f", "$x_1$ # % \\U0001F682"})
-    EXPECT_EQ(ErrorsOf("consist:\n  - vehicle: {name: \"a" + escape + "b\"}\n").find("control"),
-              std::string::npos)
+    EXPECT_EQ(ErrorsOf("consist:\n  - vehicle: {name: \"a" + escape + "b\"}\n").find("control"), std::string::npos)
         << escape;
 }
 

@@ -10,8 +10,7 @@ TEST_F(ConfigTest, FilesThatAreNotYaml) {
   EXPECT_EQ(ErrorsOf("# only a comment\n"), "a.yaml:1: must hold a map of keys and values, got nothing");
   EXPECT_EQ(ErrorsOf("just text\n"), "a.yaml:1: must hold a map of keys and values, got 'just text'");
   EXPECT_EQ(ErrorsOf("- 1\n"), "a.yaml:1: must hold a map of keys and values, got a list");
-  EXPECT_EQ(ErrorsOf(std::string("a: 1\nb: \0", 9)),
-            "a.yaml:2: is not a text file (it contains a zero byte)");
+  EXPECT_EQ(ErrorsOf(std::string("a: 1\nb: \0", 9)), "a.yaml:2: is not a text file (it contains a zero byte)");
   EXPECT_EQ(ErrorsOf("\x7f"
                      "ELF\x02"),
             "a.yaml:1: is not a text file (it contains a control character)");
@@ -21,27 +20,21 @@ TEST_F(ConfigTest, FilesThatAreNotYaml) {
 }
 
 TEST_F(ConfigTest, SyntaxErrorsNameTheirLine) {
-  EXPECT_EQ(ErrorsOf("record: true\ndetailed: [1, 2\n"),
-            "a.yaml:3: is not valid YAML: end of sequence flow not found");
-  EXPECT_EQ(ErrorsOf("patch:\n\tfriction_coefficient: 1\n"),
-            "a.yaml:2: is indented with a tab; indent with spaces");
-  EXPECT_EQ(ErrorsOf("record: true\n---\nrecord: false\n"),
-            "a.yaml:3: begins a second document; a file holds one");
+  EXPECT_EQ(ErrorsOf("record: true\ndetailed: [1, 2\n"), "a.yaml:3: is not valid YAML: end of sequence flow not found");
+  EXPECT_EQ(ErrorsOf("patch:\n\tfriction_coefficient: 1\n"), "a.yaml:2: is indented with a tab; indent with spaces");
+  EXPECT_EQ(ErrorsOf("record: true\n---\nrecord: false\n"), "a.yaml:3: begins a second document; a file holds one");
   EXPECT_EQ(ErrorsOf("record: !!bool true\n"),
             "a.yaml:1: has the tag 'tag:yaml.org,2002:bool'; tags are not supported");
-  EXPECT_EQ(ErrorsOf("[a]: 1\n"),
-            "a.yaml:1: has a list or map in the place of a key (is a bracket left open?)");
-  EXPECT_EQ(ErrorsOf("? {a: 1}\n: 1\n"),
-            "a.yaml:1: has a list or map in the place of a key (is a bracket left open?)");
+  EXPECT_EQ(ErrorsOf("[a]: 1\n"), "a.yaml:1: has a list or map in the place of a key (is a bracket left open?)");
+  EXPECT_EQ(ErrorsOf("? {a: 1}\n: 1\n"), "a.yaml:1: has a list or map in the place of a key (is a bracket left open?)");
   EXPECT_EQ(ErrorsOf("~: 1\n"), "a.yaml:1: a key must be plain text");
-  EXPECT_EQ(ErrorsOf("record: *nowhere\n"),
-            "a.yaml:1: is not valid YAML: the referenced anchor is not defined");
+  EXPECT_EQ(ErrorsOf("record: *nowhere\n"), "a.yaml:1: is not valid YAML: the referenced anchor is not defined");
   EXPECT_EQ(ErrorsOf("a: b: c\n"), "a.yaml:1: is not valid YAML: illegal map value");
 }
 
 TEST_F(ConfigTest, WindowsFilesAndComments) {
-  const Command c = Read<Command>(
-      "\xEF\xBB\xBF# comment\r\ntime_s: 1 # s\r\n\t# tab before a comment\r\nreduction_kpa: 2\r\n");
+  const Command c =
+      Read<Command>("\xEF\xBB\xBF# comment\r\ntime_s: 1 # s\r\n\t# tab before a comment\r\nreduction_kpa: 2\r\n");
   EXPECT_EQ(c.time_s, 1.0);
   EXPECT_EQ(c.reduction_kpa, 2.0);
   EXPECT_EQ(ErrorsOf<Command>("a: 1\r\n\r\ntime_s: x\r\n"),
@@ -88,18 +81,16 @@ TEST_F(ConfigTest, BombsAreRefused) {
   for (int i = 0; i < 10000; ++i) deep += " [\n";
   for (int i = 0; i < 10000; ++i) deep += " ]\n";
   EXPECT_EQ(ErrorsOf(deep), "a.yaml:65: is nested deeper than 64 levels");
-  EXPECT_EQ(
-      ErrorsOf("a: " + std::string(63, '[') + "1" + std::string(63, ']')),
-      "a.yaml:1: a is not a known key; known keys: initial_speed_kmh, record, detailed, consist, commands, "
-      "spare_couplers, patch, tail");
+  EXPECT_EQ(ErrorsOf("a: " + std::string(63, '[') + "1" + std::string(63, ']')),
+            "a.yaml:1: a is not a known key; known keys: initial_speed_kmh, record, detailed, consist, commands, "
+            "spare_couplers, patch, tail");
   std::string ladder = "a0: &a0 [x]\n";
   for (int i = 1; i < 70; ++i) {
     ladder += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [*a" + std::to_string(i - 1) + "]\n";
   }
   EXPECT_EQ(ErrorsOf(ladder), "a.yaml:64: is nested deeper than 64 levels");
 
-  EXPECT_EQ(ErrorsOf(std::string((64 << 20) + 1, ' ')),
-            "a.yaml: is larger than 64 MB, the limit for such a file");
+  EXPECT_EQ(ErrorsOf(std::string((64 << 20) + 1, ' ')), "a.yaml: is larger than 64 MB, the limit for such a file");
 }
 
 TEST_F(ConfigTest, MutatedFilesNeverCrash) {

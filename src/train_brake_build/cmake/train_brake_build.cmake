@@ -1,7 +1,8 @@
 # How every C++ target of the workspace is compiled. A package that finds train_brake_build has these functions:
 #
 #   train_brake_configure_target(target)              C++17, warnings, reproducible arithmetic, sanitizers
-#   train_brake_add_package_library(lib...)           the package's own library: src/*.cpp and include/, installed, with the
+#   train_brake_add_package_library(lib...)           the package's own library: src/*.cpp and include/, installed, with
+#   the
 #                                                     tests in test/ and the fuzz targets in fuzz/; uses lib...
 #   train_brake_add_gtests(file... LIBRARIES lib...)  one GoogleTest executable per file
 #   train_brake_add_fuzz_targets(file... LIBRARIES lib...)  one fuzz target per file

@@ -1,5 +1,5 @@
-/// Vehicles of one's own in a train, in C++: point masses with friction brakes, as own_vehicle in Python, and with snapshots, so
-/// that the train's master can bring a lost node back and leave checkpoints. See docs/own_vehicle.md.
+/// Vehicles of one's own in a train, in C++: point masses with friction brakes, as own_vehicle in Python, and with
+/// snapshots, so that the train's master can bring a lost node back and leave checkpoints. See docs/own_vehicle.md.
 #include <ros/ros.h>
 #include <train_brake_msgs/Configure.h>
 #include <train_brake_msgs/Step.h>
@@ -108,7 +108,6 @@ int main(int argc, char** argv) {
   ros::NodeHandle own("~");
   OwnVehicles vehicles(own);
   const ros::ServiceServer step = own.advertiseService("step", &OwnVehicles::OnStep, &vehicles);
-  const ros::ServiceServer configure =
-      own.advertiseService("configure", &OwnVehicles::OnConfigure, &vehicles);
+  const ros::ServiceServer configure = own.advertiseService("configure", &OwnVehicles::OnConfigure, &vehicles);
   ros::spin();
 }

@@ -2,12 +2,12 @@
 ///
 ///   needed deceleration    a = v^2 / (2 (place - position - v settle_s))
 ///
-/// v settle_s is what the train goes on before a change of the brake has acted.
-/// The first reduction of the brake pipe is made when a reaches `plan_mps2`. Afterwards it is deepened step by step, each
-/// when the train slows down by less than a, and not before the step before it has had `settle_s` to act. A deeper reduction is
-/// never taken back: a brake that releases step by step is not assumed. So the train stops beside the place by what
-/// one step too many, or the last one too late, makes: with the freight train of config/scenarios/drive_and_stop.yaml 6 m
-/// beyond it from 40 km/h, 23 m short of it from 60 km/h.
+/// v settle_s is what the train goes on before a change of the brake has acted. The first reduction of the brake pipe
+/// is made when a reaches `plan_mps2`. Afterwards it is deepened step by step, each when the train slows down by less
+/// than a, and not before the step before it has had `settle_s` to act. A deeper reduction is never taken back: a brake
+/// that releases step by step is not assumed. So the train stops beside the place by what one step too many, or the
+/// last one too late, makes: with the freight train of config/scenarios/drive_and_stop.yaml 6 m beyond it from 40 km/h,
+/// 23 m short of it from 60 km/h.
 #include <ros/ros.h>
 #include <train_brake_msgs/Drive.h>
 
@@ -45,8 +45,8 @@ class StopAtPlace {
     const double slowing_mps2 = (last_mps_ - view.speed_mps) / request.control_period_s;
     last_mps_ = view.speed_mps;
     const double left_m = place_m_ - view.position_m - view.speed_mps * settle_s_;
-    const double needed_mps2 = left_m > 0.0 ? view.speed_mps * view.speed_mps / (2.0 * left_m)
-                                            : std::numeric_limits<double>::infinity();
+    const double needed_mps2 =
+        left_m > 0.0 ? view.speed_mps * view.speed_mps / (2.0 * left_m) : std::numeric_limits<double>::infinity();
     if (view.speed_mps <= 0.0 || needed_mps2 < plan_mps2_) return true;
     if (reduction_kpa_ == 0.0) {
       if (view.effort_n > 0.0) Throttle(0.0, answer);

@@ -22,18 +22,13 @@ constexpr const char* kWidestValue = "-88.8 \u2030; no change in sight";
 constexpr double kFirstReduction = 50.0, kFullReduction = 200.0;  // [kPa]
 
 QString Number(double value, int decimals) { return QString::number(value, 'f', decimals); }
-QString Kmh(double mps) {
-  return std::isfinite(mps) ? Number(kKmhPerMps * mps, 0) + " km/h" : QString("none");
-}
+QString Kmh(double mps) { return std::isfinite(mps) ? Number(kKmhPerMps * mps, 0) + " km/h" : QString("none"); }
 QString Distance(double m) { return m < 1000.0 ? Number(m, 0) + " m" : Number(1e-3 * m, 1) + " km"; }
-QString KiloPascal(double kpa) {
-  return std::isfinite(kpa) ? Number(kpa, 0) + " kPa" : QString("not computed");
-}
+QString KiloPascal(double kpa) { return std::isfinite(kpa) ? Number(kpa, 0) + " kPa" : QString("not computed"); }
 
 /// What comes next of a quantity that changes along the line: "80 km/h in 1.2 km".
 template <class Text>
-QString Next(const std::vector<double>& from_m, const std::vector<double>& values, double front_m,
-             const Text& text) {
+QString Next(const std::vector<double>& from_m, const std::vector<double>& values, double front_m, const Text& text) {
   if (from_m.empty() || values.size() != from_m.size()) return "no change in sight";
   return text(values.front()) + " in " + Distance(from_m.front() - front_m);
 }
@@ -162,13 +157,11 @@ void CabPanel::SetLever(QSlider* lever, double notch, double notches) {
 void CabPanel::ShowView(const DriverView& view) {
   speed_->setText(Number(kKmhPerMps * view.speed_mps, 1) + " km/h");
   const bool too_fast = view.speed_mps > view.speed_limit_mps;
-  speed_->setStyleSheet(
-      QString("font-size: 28px; font-weight: bold; color: %1").arg(too_fast ? "#d55e00" : "black"));
+  speed_->setStyleSheet(QString("font-size: 28px; font-weight: bold; color: %1").arg(too_fast ? "#d55e00" : "black"));
   limit_->setText(Kmh(view.speed_limit_mps));
   ahead_->setText(Next(view.limit_from_m, view.limit_mps, view.front_m, Kmh));
   const auto permille = [](double grade) { return Number(1e3 * grade, 1) + " \u2030"; };
-  grade_->setText(permille(view.mean_grade) + "; " +
-                  Next(view.grade_from_m, view.grade, view.front_m, permille));
+  grade_->setText(permille(view.mean_grade) + "; " + Next(view.grade_from_m, view.grade, view.front_m, permille));
   SetLever(throttle_, view.throttle_notch, view.throttle_notches);
   SetLever(dynamic_brake_, view.dynamic_brake_notch, view.dynamic_brake_notches);
   effort_->setText(Number(1e-3 * view.effort_n, 0) + " kN");
@@ -182,8 +175,8 @@ void CabPanel::ShowView(const DriverView& view) {
 void CabPanel::ShowStatus(const RunStatus& status) {
   const bool runs = status.state != RunStatus::ENDED;
   for (QPushButton* button : {apply_, release_, emergency_}) button->setEnabled(runs);
-  forces_->setText(Number(1e-3 * status.max_tension_n, 0) + " kN, " +
-                   Number(1e-3 * status.max_compression_n, 0) + " kN");
+  forces_->setText(Number(1e-3 * status.max_tension_n, 0) + " kN, " + Number(1e-3 * status.max_compression_n, 0) +
+                   " kN");
   if (!runs) ShowAnswer(false, "the run has ended");
   if (runs && message_->text() == "no train is running") ShowAnswer(true, "");
 }

@@ -26,8 +26,7 @@ std_msgs::ColorRGBA Opaque(Color color) {
 
 }  // namespace
 
-void MarkerWriter::Append(const std::string& name, const Drawing& drawing,
-                          visualization_msgs::MarkerArray& out) {
+void MarkerWriter::Append(const std::string& name, const Drawing& drawing, visualization_msgs::MarkerArray& out) {
   Marker shapes;
   shapes.ns = name;
   shapes.type = Marker::TRIANGLE_LIST;

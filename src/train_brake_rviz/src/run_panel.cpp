@@ -17,8 +17,7 @@ namespace {
 using train_brake_msgs::RunStatus;
 using train_brake_msgs::ViewSelection;
 
-QPushButton* MakeButton(QHBoxLayout* row, const QString& name, QStyle::StandardPixmap icon,
-                        const QString& tip) {
+QPushButton* MakeButton(QHBoxLayout* row, const QString& name, QStyle::StandardPixmap icon, const QString& tip) {
   auto* button = new QPushButton(QApplication::style()->standardIcon(icon), name);
   button->setObjectName(name);
   button->setToolTip(tip);

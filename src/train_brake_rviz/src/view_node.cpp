@@ -41,8 +41,7 @@ std::vector<double> Doubles(const std::vector<From>& values, size_t count) {
 
 }  // namespace
 
-ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own,
-                   train_node::NodeParameters& parameters)
+ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own, train_node::NodeParameters& parameters)
     : train_(train),
       own_(own),
       frame_prefix_(FramePrefix(train.getNamespace())),
@@ -69,25 +68,22 @@ ViewNode::ViewNode(const ros::NodeHandle& train, const ros::NodeHandle& own,
 
   if (!file.empty()) Begin(train_dynamics::config::LoadScenario(file, {}).params);
   constexpr int kQueue = 1;  // only the newest is drawn
-  subscribers_ = {
-      train_.subscribe("scenario", kQueue, &ViewNode::OnScenario, this),
-      train_.subscribe(source_ + "state", kQueue, &ViewNode::OnState, this),
-      train_.subscribe<train_brake_msgs::InTrainForces>(
-          source_ + "in_train_forces", kQueue,
-          [this](const train_brake_msgs::InTrainForcesConstPtr& message) { forces_ = message; }),
-      train_.subscribe<train_brake_msgs::BrakePressures>(
-          source_ + "brake_pressures", kQueue,
-          [this](const train_brake_msgs::BrakePressuresConstPtr& message) { pressures_ = message; })};
+  subscribers_ = {train_.subscribe("scenario", kQueue, &ViewNode::OnScenario, this),
+                  train_.subscribe(source_ + "state", kQueue, &ViewNode::OnState, this),
+                  train_.subscribe<train_brake_msgs::InTrainForces>(
+                      source_ + "in_train_forces", kQueue,
+                      [this](const train_brake_msgs::InTrainForcesConstPtr& message) { forces_ = message; }),
+                  train_.subscribe<train_brake_msgs::BrakePressures>(
+                      source_ + "brake_pressures", kQueue,
+                      [this](const train_brake_msgs::BrakePressuresConstPtr& message) { pressures_ = message; })};
   timer_ = own_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { Draw(); });
 }
 
 void ViewNode::OnScenario(const std_msgs::String& message) {
   strict_config::ErrorList errors;
-  const auto scenario =
-      strict_config::LoadText<train_dynamics::ScenarioParams>(message.data, "scenario", errors);
+  const auto scenario = strict_config::LoadText<train_dynamics::ScenarioParams>(message.data, "scenario", errors);
   if (!errors.empty()) {
-    ROS_ERROR("the scenario on %s cannot be used:\n%s", train_.resolveName("scenario").c_str(),
-              errors.Text().c_str());
+    ROS_ERROR("the scenario on %s cannot be used:\n%s", train_.resolveName("scenario").c_str(), errors.Text().c_str());
     return;
   }
   Begin(scenario);
@@ -160,8 +156,7 @@ void ViewNode::PublishSelection() {
   if (board_ != nullptr) {
     message.vehicle = static_cast<std::uint32_t>(selection_.vehicle + 1);
     message.vehicles = static_cast<std::uint32_t>(board_->vehicles());
-    for (const int i : scenario_.DetailedVehicles())
-      message.detailed.push_back(static_cast<std::uint32_t>(i + 1));
+    for (const int i : scenario_.DetailedVehicles()) message.detailed.push_back(static_cast<std::uint32_t>(i + 1));
   }
   selection_publisher_.publish(message);
 }
@@ -210,8 +205,7 @@ Snapshot ViewNode::MakeSnapshot() {
   snapshot.acceleration_mps2 = Doubles(state_->acceleration_mps2, vehicles);
   snapshot.creepage = Doubles(state_->creepage, vehicles);
   if (forces_ != nullptr) snapshot.coupler_force_n = Doubles(forces_->coupler_force_n, vehicles - 1);
-  if (pressures_ != nullptr)
-    snapshot.cylinder_pressure_pa = Doubles(pressures_->cylinder_pressure_pa, vehicles);
+  if (pressures_ != nullptr) snapshot.cylinder_pressure_pa = Doubles(pressures_->cylinder_pressure_pa, vehicles);
   if (pressures_ != nullptr && !pressures_->pipe_pressure_pa.empty())
     snapshot.pipe_pressure_pa = Doubles(pressures_->pipe_pressure_pa, vehicles);
   const auto wagon = wagons_.find(selection_.vehicle);
@@ -234,8 +228,7 @@ double ViewNode::RealTimeFactor(double simulated_s) {
 void ViewNode::PublishTransforms(const Snapshot& snapshot) {
   if (snapshot.position_m.empty()) return;
   std::vector<int> shown = board_->locomotives();
-  if (std::find(shown.begin(), shown.end(), selection_.vehicle) == shown.end())
-    shown.push_back(selection_.vehicle);
+  if (std::find(shown.begin(), shown.end(), selection_.vehicle) == shown.end()) shown.push_back(selection_.vehicle);
   std::vector<geometry_msgs::TransformStamped> transforms;
   for (const int i : shown) {
     ros::Time& sent = transform_sent_[i];

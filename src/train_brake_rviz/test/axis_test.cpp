@@ -14,8 +14,7 @@ TEST(NiceCeiling, IsTheNextRoundNumber) {
     EXPECT_GE(nice, value * (1.0 - 1e-9));
     EXPECT_LT(nice, 2.5 * value);  // the largest gap is from 2 to 5
     const double digit = nice / std::pow(10.0, std::floor(std::log10(nice) + 1e-9));
-    EXPECT_TRUE(std::abs(digit - 1.0) < 1e-9 || std::abs(digit - 2.0) < 1e-9 || std::abs(digit - 5.0) < 1e-9)
-        << nice;
+    EXPECT_TRUE(std::abs(digit - 1.0) < 1e-9 || std::abs(digit - 2.0) < 1e-9 || std::abs(digit - 5.0) < 1e-9) << nice;
   }
 }
 

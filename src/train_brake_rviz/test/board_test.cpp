@@ -17,9 +17,7 @@ namespace {
 using train_dynamics::ScenarioParams;
 
 ScenarioParams Load(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return train_dynamics::config::LoadScenario(TRAIN_BRAKE_CONFIG_DIR "/scenarios/" + name + ".yaml",
-                                              overrides)
-      .params;
+  return train_dynamics::config::LoadScenario(TRAIN_BRAKE_CONFIG_DIR "/scenarios/" + name + ".yaml", overrides).params;
 }
 
 /// A train that has come `travelled_m` far, with forces up to this size.
@@ -63,9 +61,7 @@ struct Case {
   double travelled_m, force_n;
 };
 
-void PrintTo(const Case& c, std::ostream* stream) {
-  *stream << c.scenario << " at " << c.travelled_m << " m";
-}
+void PrintTo(const Case& c, std::ostream* stream) { *stream << c.scenario << " at " << c.travelled_m << " m"; }
 
 class BoardPicture : public testing::TestWithParam<Case> {};
 
@@ -79,8 +75,7 @@ TEST_P(BoardPicture, IsWithinTheBoardAndNoTextLiesOnAnother) {
       std::vector<const Text*> texts;
       for (const Drawing* part : PartsOf(picture)) {
         for (const Vertex& vertex : part->vertices()) {
-          ExpectWithin({vertex.at.right, vertex.at.right, vertex.at.up, vertex.at.up}, layout::kBoard,
-                       "shape");
+          ExpectWithin({vertex.at.right, vertex.at.right, vertex.at.up, vertex.at.up}, layout::kBoard, "shape");
         }
         for (const Text& text : part->texts()) {
           ExpectWithin(ExtentOf(text), layout::kBoard, text.words);
@@ -96,14 +91,12 @@ TEST_P(BoardPicture, IsWithinTheBoardAndNoTextLiesOnAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, BoardPicture,
-                         testing::Values(Case{"emergency", {}, 0.0, 0.0},
-                                         Case{"emergency", {}, 1234.0, 2.5e6},
-                                         Case{"emergency", {"model=ltd"}, 321.0, 9e5},
-                                         Case{"minimum", {}, 777.0, 3e5}, Case{"dip", {}, 45.0, 0.0},
-                                         Case{"ore_line_trip", {}, 30000.0, 1e6},
+                         testing::Values(Case{"emergency", {}, 0.0, 0.0}, Case{"emergency", {}, 1234.0, 2.5e6},
+                                         Case{"emergency", {"model=ltd"}, 321.0, 9e5}, Case{"minimum", {}, 777.0, 3e5},
+                                         Case{"dip", {}, 45.0, 0.0}, Case{"ore_line_trip", {}, 30000.0, 1e6},
                                          Case{"emergency",
-                                              {"train.consist=[{vehicle: ore_wagon, count: 3}]",
-                                               "detail_vehicles=[1]", "brake=single_vehicle"},
+                                              {"train.consist=[{vehicle: ore_wagon, count: 3}]", "detail_vehicles=[1]",
+                                               "brake=single_vehicle"},
                                               10.0,
                                               1e5}));
 
@@ -130,9 +123,8 @@ TEST(Board, ShowsThePipeAlongTheTrain) {
   Snapshot snapshot = Travelled(scenario, 0.0, 0.0);
   Board board(scenario);
   const Quantity& pipe = *FindQuantity("pipe_pressure");
-  const Color front = ColorOf(pipe, 450.0, 500.0),
-              rear = ColorOf(pipe, 300.0, 500.0);                         // kPa; the scale's end
-  EXPECT_EQ(0.0, AreaOf(board.Draw(snapshot, {&pipe, 0}).train, front));  // the brake has none
+  const Color front = ColorOf(pipe, 450.0, 500.0), rear = ColorOf(pipe, 300.0, 500.0);  // kPa; the scale's end
+  EXPECT_EQ(0.0, AreaOf(board.Draw(snapshot, {&pipe, 0}).train, front));                // the brake has none
   snapshot.pipe_pressure_pa.assign(242, 4.5e5);
   for (int i = 121; i < 242; ++i) snapshot.pipe_pressure_pa[i] = 3.0e5;
   const Picture picture = board.Draw(snapshot, {&pipe, 0});

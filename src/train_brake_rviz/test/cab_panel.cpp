@@ -24,17 +24,15 @@ class CabPanelTest : public testing::Test {
  protected:
   CabPanelTest() {
     given_subscriber_ = node_.subscribe<GivenCommand>(
-        "/train/driver/given", 100,
-        [this](const GivenCommand::ConstPtr& message) { given_.push_back(*message); });
-    view_subscriber_ = node_.subscribe<DriverView>(
-        "/train/live/driver_view", 1, [this](const DriverView::ConstPtr& message) { view_ = *message; });
+        "/train/driver/given", 100, [this](const GivenCommand::ConstPtr& message) { given_.push_back(*message); });
+    view_subscriber_ = node_.subscribe<DriverView>("/train/live/driver_view", 1,
+                                                   [this](const DriverView::ConstPtr& message) { view_ = *message; });
     panel_.show();
     width_before_ = panel_.sizeHint().width();
   }
   void SetUp() override {
-    ASSERT_TRUE(Comes([this] {
-      return Find<QPushButton>("Release").isEnabled() && Find<QSlider>("Throttle").isEnabled();
-    }));
+    ASSERT_TRUE(
+        Comes([this] { return Find<QPushButton>("Release").isEnabled() && Find<QSlider>("Throttle").isEnabled(); }));
   }
 
   /// Lets messages and events come until the condition holds.
@@ -57,8 +55,7 @@ class CabPanelTest : public testing::Test {
   bool WasGiven(const std::string& kind, double value) {
     for (const GivenCommand& given : given_) {
       const auto& command = given.command;
-      if (command.kind == kind && (kind == "apply" ? command.reduction_kpa : command.notch) == value)
-        return given.live;
+      if (command.kind == kind && (kind == "apply" ? command.reduction_kpa : command.notch) == value) return given.live;
     }
     return false;
   }
@@ -72,19 +69,15 @@ class CabPanelTest : public testing::Test {
 };
 
 TEST_F(CabPanelTest, ShowsWhatADriverSees) {
-  EXPECT_TRUE(
-      Comes([this] { return Text("Limit") == "60 km/h" && Text("Ahead").startsWith("20 km/h in "); }));
-  EXPECT_TRUE(
-      Comes([this] { return Text("Speed") == QString::number(3.6 * view_.speed_mps, 'f', 1) + " km/h"; }));
-  EXPECT_TRUE(
-      Comes([this] { return Text("BrakePipe") == "not computed" && Text("Cylinder") == "0 kPa; 0 kPa"; }));
+  EXPECT_TRUE(Comes([this] { return Text("Limit") == "60 km/h" && Text("Ahead").startsWith("20 km/h in "); }));
+  EXPECT_TRUE(Comes([this] { return Text("Speed") == QString::number(3.6 * view_.speed_mps, 'f', 1) + " km/h"; }));
+  EXPECT_TRUE(Comes([this] { return Text("BrakePipe") == "not computed" && Text("Cylinder") == "0 kPa; 0 kPa"; }));
   EXPECT_TRUE(Comes([this] { return Text("Forces").endsWith(" kN"); }));
   EXPECT_TRUE(Comes([this] { return Text("Message").isEmpty(); }));
 }
 
 TEST_F(CabPanelTest, NoTextMakesItWiderOrIsCut) {
-  for (const char* name :
-       {"Limit", "Ahead", "Grade", "Effort", "Handle", "BrakePipe", "Cylinder", "Forces"}) {
+  for (const char* name : {"Limit", "Ahead", "Grade", "Effort", "Handle", "BrakePipe", "Cylinder", "Forces"}) {
     EXPECT_TRUE(Comes([&] { return Text(name) != "-"; })) << name;
     const auto& value = Find<QLabel>(name);
     EXPECT_LE(value.fontMetrics().horizontalAdvance(value.text()), value.width()) << name;
@@ -120,8 +113,7 @@ TEST_F(CabPanelTest, TheBrakeHandle) {
   Find<QDoubleSpinBox>("Reduction").setValue(70.0);
   Find<QPushButton>("Apply").click();
   EXPECT_TRUE(Comes([this] { return WasGiven("apply", 70.0); }));
-  EXPECT_TRUE(
-      Comes([this] { return Text("Handle") == "reduction 70 kPa" && view_.mean_cylinder_kpa > 1.0; }));
+  EXPECT_TRUE(Comes([this] { return Text("Handle") == "reduction 70 kPa" && view_.mean_cylinder_kpa > 1.0; }));
   Find<QPushButton>("Emergency").click();
   EXPECT_TRUE(Comes([this] { return Text("Handle") == "EMERGENCY"; }));
   Find<QPushButton>("Release").click();

@@ -71,8 +71,7 @@ TEST_F(CloseUpTest, MotionAgainstRestIsExaggerated) {
   const Point before = close_up_.PlaceOf(at_rest_, kCarbody, 0.0, 0.0);
   const Point centre = close_up_.PlaceOf(moved, kCarbody, 0.0, 0.0);
   EXPECT_NEAR(-0.01 * kExaggeration * close_up_.scale(), centre.up - before.up, 1e-9);
-  EXPECT_LT(close_up_.PlaceOf(moved, kCarbody, 3.0, 0.0).up,
-            close_up_.PlaceOf(moved, kCarbody, -3.0, 0.0).up);
+  EXPECT_LT(close_up_.PlaceOf(moved, kCarbody, 3.0, 0.0).up, close_up_.PlaceOf(moved, kCarbody, -3.0, 0.0).up);
 
   CloseUp::Bodies travelled = at_rest_;
   for (double& x : travelled.x) x += 1234.5;  // the whole wagon: nothing moves against anything

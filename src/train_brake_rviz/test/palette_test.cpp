@@ -8,9 +8,7 @@
 
 namespace train_brake_rviz {
 
-bool operator==(const Color& a, const Color& b) {
-  return a.red == b.red && a.green == b.green && a.blue == b.blue;
-}
+bool operator==(const Color& a, const Color& b) { return a.red == b.red && a.green == b.green && a.blue == b.blue; }
 std::ostream& operator<<(std::ostream& stream, const Color& c) {
   return stream << c.red << ' ' << c.green << ' ' << c.blue;
 }
@@ -29,8 +27,7 @@ TEST(Palette, SequentialScaleDarkensEvenly) {
   const double whole = Lightness(Sequential(0.0)) - Lightness(Sequential(1.0));
   EXPECT_GT(whole, 70.0);
   for (int i = 0; i < kSteps; ++i) {
-    const double step =
-        Lightness(Sequential(double(i) / kSteps)) - Lightness(Sequential(double(i + 1) / kSteps));
+    const double step = Lightness(Sequential(double(i) / kSteps)) - Lightness(Sequential(double(i + 1) / kSteps));
     EXPECT_GT(step, 0.3 * whole / kSteps) << i;
     EXPECT_LT(step, 2.0 * whole / kSteps) << i;
   }

@@ -25,11 +25,10 @@ using train_brake_msgs::ViewSelection;
 class RunPanelTest : public testing::Test {
  protected:
   RunPanelTest() {
-    status_subscriber_ = node_.subscribe<RunStatus>(
-        "/train/live/status", 1, [this](const RunStatus::ConstPtr& message) { status_ = *message; });
+    status_subscriber_ = node_.subscribe<RunStatus>("/train/live/status", 1,
+                                                    [this](const RunStatus::ConstPtr& message) { status_ = *message; });
     selection_subscriber_ = node_.subscribe<ViewSelection>(
-        "/train/view/selection", 1,
-        [this](const ViewSelection::ConstPtr& message) { selection_ = *message; });
+        "/train/view/selection", 1, [this](const ViewSelection::ConstPtr& message) { selection_ = *message; });
     panel_.show();
   }
 

@@ -68,8 +68,7 @@ std::string ShellWord(const std::string& text) {
   constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=:,./@%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
   std::string word = "'";
-  for (const char character : text)
-    word += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  for (const char character : text) word += character == '\'' ? std::string("'\\''") : std::string(1, character);
   return word + "'";
 }
 

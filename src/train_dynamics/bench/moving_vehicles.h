@@ -31,8 +31,7 @@ class MovingVehicles {
   using State = typename VehicleBatch<Vehicle>::State;
 
   /// @param start  every vehicle's state, about 80 km/h; two seconds under the brake follow
-  MovingVehicles(Vehicle vehicle_, const State& start)
-      : vehicle(std::move(vehicle_)), states(kVehicles, start) {
+  MovingVehicles(Vehicle vehicle_, const State& start) : vehicle(std::move(vehicle_)), states(kVehicles, start) {
     for (int i = 0; i <= kVehicles; ++i) {
       const double share = static_cast<double>(i) / kVehicles;
       loads_.coupler_force_n.push_back(4e5 * (share - 0.5));

@@ -1,6 +1,6 @@
-// The train over MPI, for comparison with the ROS graph: rank 0 is the master, the others have the vehicles. The exchange
-// is the same - scatter of forces and pressures, one step, gather of coupler heads and, where one is due, of the record -
-// and so is all the arithmetic, hence the digest. Energies and vehicles in detail are left out.
+// The train over MPI, for comparison with the ROS graph: rank 0 is the master, the others have the vehicles. The
+// exchange is the same - scatter of forces and pressures, one step, gather of coupler heads and, where one is due, of
+// the record - and so is all the arithmetic, hence the digest. Energies and vehicles in detail are left out.
 //
 // usage: mpirun -n RANKS+1 mpi_train SCENARIO [PATH=VALUE ...]      prints JSON
 #include <mpi.h>
@@ -97,8 +97,7 @@ class MpiTransport : public Transport {
     for (const Rank& rank : ranks_) {
       *to++ = static_cast<double>(request.record ? Order::kStepAndRecord : Order::kStep);
       to = std::copy_n(&request.coupler_force_n[rank.first], rank.count + 1, to);
-      ForEachGivenLoad(request,
-                       [&](const Row& array) { to = std::copy_n(&array[rank.first], rank.count, to); });
+      ForEachGivenLoad(request, [&](const Row& array) { to = std::copy_n(&array[rank.first], rank.count, to); });
     }
     Scatter();
     Gather(request.record, reply);
@@ -113,15 +112,15 @@ class MpiTransport : public Transport {
 
  private:
   void Scatter() {
-    MPI_Scatterv(numbers_.data(), request_.sizes.data(), request_.begins.data(), MPI_DOUBLE, nullptr, 0,
-                 MPI_DOUBLE, 0, MPI_COMM_WORLD);
+    MPI_Scatterv(numbers_.data(), request_.sizes.data(), request_.begins.data(), MPI_DOUBLE, nullptr, 0, MPI_DOUBLE, 0,
+                 MPI_COMM_WORLD);
   }
 
   void Gather(bool record, ExchangeReply& reply) {
     const Layout& layout = record ? record_ : reply_;
     Row replies(layout.total);
-    MPI_Gatherv(nullptr, 0, MPI_DOUBLE, replies.data(), layout.sizes.data(), layout.begins.data(), MPI_DOUBLE,
-                0, MPI_COMM_WORLD);
+    MPI_Gatherv(nullptr, 0, MPI_DOUBLE, replies.data(), layout.sizes.data(), layout.begins.data(), MPI_DOUBLE, 0,
+                MPI_COMM_WORLD);
     const double* from = replies.data();
     for (const Rank& rank : ranks_) {
       if (*from++ != 1.0) reply.fault = {rank.first, "has left the domain of the laws, or one behind it"};
@@ -145,8 +144,7 @@ void RunMaster(const config::LoadedScenario& scenario, const std::vector<Rank>& 
   while (!master.Done()) master.Exchange();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   transport.End();
-  std::printf("{\"ranks\": %zu, \"exchanges\": %" PRIu64 ", \"wall_s\": %.9g, \"state_digest\": \"%016" PRIx64
-              "\"}\n",
+  std::printf("{\"ranks\": %zu, \"exchanges\": %" PRIu64 ", \"wall_s\": %.9g, \"state_digest\": \"%016" PRIx64 "\"}\n",
               ranks.size(), master.exchange(), wall.count(), master.state_digest());
 }
 
@@ -163,15 +161,15 @@ void RunVehicles(const config::LoadedScenario& scenario, const Rank& rank) {
       numbers.resize(numbers.size() + array.size());
       std::memcpy(&*numbers.end() - array.size(), array.data(), array.size() * sizeof(double));
     });
-    MPI_Gatherv(numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, nullptr, nullptr, nullptr,
-                MPI_DOUBLE, 0, MPI_COMM_WORLD);
+    MPI_Gatherv(numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, nullptr, nullptr, nullptr, MPI_DOUBLE, 0,
+                MPI_COMM_WORLD);
   };
   block->Report(0, false, reply);
   send(true, true);
   while (true) {
     numbers.resize(RequestSize(rank));
-    MPI_Scatterv(nullptr, nullptr, nullptr, MPI_DOUBLE, numbers.data(), static_cast<int>(numbers.size()),
-                 MPI_DOUBLE, 0, MPI_COMM_WORLD);
+    MPI_Scatterv(nullptr, nullptr, nullptr, MPI_DOUBLE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE, 0,
+                 MPI_COMM_WORLD);
     const auto order = static_cast<Order>(numbers[0]);
     if (order == Order::kEnd) return;
     request.record = order == Order::kStepAndRecord;
@@ -201,8 +199,7 @@ int main(int argc, char** argv) {
       throw std::invalid_argument("usage: mpirun -n RANKS+1 mpi_train SCENARIO [PATH=VALUE ...]");
     const auto scenario = config::LoadScenario(argv[1], std::vector<std::string>(argv + 2, argv + argc));
     const std::vector<Rank> ranks = SplitRanks(scenario.consist.vehicles(), processes - 1);
-    if (static_cast<int>(ranks.size()) != processes - 1)
-      throw std::invalid_argument("more ranks than vehicles");
+    if (static_cast<int>(ranks.size()) != processes - 1) throw std::invalid_argument("more ranks than vehicles");
     if (process == 0) {
       RunMaster(scenario, ranks);
     } else {

@@ -1,7 +1,7 @@
 // Runs a program and prints, as the last line of its output, the most memory that it had [bytes].
 //
-// What getrusage says of a child begins with the memory of the process that starts it, also after exec: a program that starts
-// a program must be smaller. Hence a program of its own, which uses nothing but the C library.
+// What getrusage says of a child begins with the memory of the process that starts it, also after exec: a program that
+// starts a program must be smaller. Hence a program of its own, which uses nothing but the C library.
 //
 // usage: peak_memory PROGRAM [ARGUMENT ...]      ends with the program's exit code
 #include <sys/resource.h>

@@ -39,9 +39,7 @@ class StepInParts {
   }
 
   /// Creep law and implicit slip of the four wheelsets, and their part of the books.
-  void CreepAndSlip() {
-    wheelsets_ = StepWheelsets<false>(*wagon_, rail_, outer_, force_, dt_, v0_, v1_, kNoOutput);
-  }
+  void CreepAndSlip() { wheelsets_ = StepWheelsets<false>(*wagon_, rail_, outer_, force_, dt_, v0_, v1_, kNoOutput); }
 
   /// Shoes, rolling resistance, air drag, couplers, grade.
   void BrakeAndResistance() { outer_ = OuterForcesOn<false>(*wagon_, *track_, loads_, s_); }
@@ -102,8 +100,8 @@ struct StepPart {
   void (StepInParts<T>::*run)();
 };
 
-/// The parts with laws in them; what is missing to the whole step are transformations between bodies and elements, kicks
-/// and drifts.
+/// The parts with laws in them; what is missing to the whole step are transformations between bodies and elements,
+/// kicks and drifts.
 template <class T>
 inline constexpr StepPart<T> kStepParts[] = {
     {"contact", &StepInParts<T>::Contact},

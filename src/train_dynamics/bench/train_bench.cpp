@@ -109,10 +109,9 @@ void AirBrakePressure(benchmark::State& state) {
 /// pressures at every exchange. An emergency's first 20 s, or a service application, a release and its recharge, 120 s.
 void PneumaticBrakePressure(benchmark::State& state, bool emergency) {
   const std::vector<std::string> overrides = {
-      "brake=ab_distributed", emergency
-                                  ? "commands=[{time_s: 0, kind: emergency}]"
-                                  : "commands=[{time_s: 0, kind: apply, reduction_kpa: 100}, {time_s: 60, "
-                                    "kind: release}]"};
+      "brake=ab_distributed", emergency ? "commands=[{time_s: 0, kind: emergency}]"
+                                        : "commands=[{time_s: 0, kind: apply, reduction_kpa: 100}, {time_s: 60, "
+                                          "kind: release}]"};
   const double end_s = emergency ? 20.0 : 120.0;
   const config::LoadedScenario scenario = Emergency(overrides);
   std::vector<double> pressure_pa;

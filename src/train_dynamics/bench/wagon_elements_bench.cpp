@@ -1,9 +1,9 @@
-// The parts of the wagon's time step, each by itself over packs of lanes: rolling/PART, sliding/PART, and the whole step
-// in the same setting. One iteration is four packs.
+// The parts of the wagon's time step, each by itself over packs of lanes: rolling/PART, sliding/PART, and the whole
+// step in the same setting. One iteration is four packs.
 //
 // Compiled for the machine that builds it: its packs are as wide as the widest kernel's of train_dynamics. A part by
-// itself reads its input from memory and writes its result there, of which the whole step keeps a share in registers: the
-// parts may add up to more than the whole.
+// itself reads its input from memory and writes its result there, of which the whole step keeps a share in registers:
+// the parts may add up to more than the whole.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -39,8 +39,7 @@ std::vector<StepInParts<Pack>> Packs(const MovingVehicles<Wagon>& moving) {
   for (int i = 0; i < kPacks; ++i) {
     VehicleLoads<Pack> loads;
     loads.cylinder_pressure_pa = Pack(3.5e5);
-    packs.emplace_back(moving.vehicle, moving.track, loads, kTimeStep,
-                       SideBySide(moving.states, i * kNativeLanes));
+    packs.emplace_back(moving.vehicle, moving.track, loads, kTimeStep, SideBySide(moving.states, i * kNativeLanes));
   }
   return packs;
 }

@@ -32,8 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> sections = Split({reinterpret_cast<const char*>(data), size}, '\x1e');
   sections.resize(4);
   const std::string file = folder.Put("scenarios/s.yaml", sections[1]);
-  for (const char* kind :
-       {"trains", "vehicles", "couplers", "brakes", "tracks", "adhesion", "slide_protection"}) {
+  for (const char* kind : {"trains", "vehicles", "couplers", "brakes", "tracks", "adhesion", "slide_protection"}) {
     folder.Put(std::string(kind) + "/p.yaml", sections[2]);
   }
   folder.Put("scenarios/t.csv", sections[3]);

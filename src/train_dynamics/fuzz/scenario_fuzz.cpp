@@ -21,8 +21,7 @@ ScenarioParams Read(const std::string& text, strict_config::ErrorList& errors) {
 /// A few exchanges of a train that is not too large for a fuzzer.
 void Move(const ScenarioParams& scenario) {
   const Consist consist(scenario.train);
-  if (consist.vehicles() > 20 || scenario.StepsPerExchange() > 100 || !scenario.pressure_table.empty())
-    return;
+  if (consist.vehicles() > 20 || scenario.StepsPerExchange() > 100 || !scenario.pressure_table.empty()) return;
   try {
     InProcessTransport vehicles(scenario, consist, 1);
     TrainMaster master(scenario, consist, vehicles, MakeBrakeSystem(scenario, consist));

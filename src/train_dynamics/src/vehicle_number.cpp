@@ -10,8 +10,7 @@ int VehicleIndex(int number, int vehicles) {
 std::string VehicleRule(int vehicles) {
   if (vehicles == 1) return "must be 1 or -1, because the train has 1 vehicle";
   const std::string n = std::to_string(vehicles);
-  return "must be in [1, " + n + "], or in [-" + n + ", -1] from the rear, because the train has " + n +
-         " vehicles";
+  return "must be in [1, " + n + "], or in [-" + n + ", -1] from the rear, because the train has " + n + " vehicles";
 }
 
 }  // namespace train_dynamics

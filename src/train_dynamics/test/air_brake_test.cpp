@@ -33,15 +33,11 @@ std::vector<double> PaperTrain() {
   return centres;
 }
 
-BrakeCommand Apply(double time_s, double reduction_kpa) {
-  return {time_s, BrakeCommandKind::kApply, reduction_kpa};
-}
+BrakeCommand Apply(double time_s, double reduction_kpa) { return {time_s, BrakeCommandKind::kApply, reduction_kpa}; }
 BrakeCommand Emergency(double time_s) { return {time_s, BrakeCommandKind::kEmergency, 0.0}; }
 BrakeCommand Release(double time_s) { return {time_s, BrakeCommandKind::kRelease, 0.0}; }
 
-AirBrake Brake(const std::vector<BrakeCommand>& commands) {
-  return AirBrake(PaperBrake(), commands, PaperTrain());
-}
+AirBrake Brake(const std::vector<BrakeCommand>& commands) { return AirBrake(PaperBrake(), commands, PaperTrain()); }
 
 // When the last command reaches a vehicle; infinity without commands.
 double ArrivalTime(const AirBrake& brake, int vehicle) {
@@ -64,8 +60,7 @@ struct Source {
   int vehicle;
   double delay_s;
 };
-const std::vector<Source> kApplying = {
-    {0, 0.0}, {121, 1.09}, {241, 3.2}};  // lead and mid locomotive, End-of-Train
+const std::vector<Source> kApplying = {{0, 0.0}, {121, 1.09}, {241, 3.2}};  // lead and mid locomotive, End-of-Train
 const std::vector<Source> kReleasing = {{0, 0.0}, {121, 0.0}};
 
 // First arrival after a command, and the distance from the source it comes from.
@@ -76,8 +71,7 @@ Arrival FirstWave(int vehicle, const std::vector<Source>& sources, double wave_s
   Arrival first{1e9, 0.0};
   for (const Source& s : sources) {
     const double distance = kPitch * std::abs(vehicle - s.vehicle);
-    if (s.delay_s + distance / wave_speed < first.after_s)
-      first = {s.delay_s + distance / wave_speed, distance};
+    if (s.delay_s + distance / wave_speed < first.after_s) first = {s.delay_s + distance / wave_speed, distance};
   }
   return first;
 }
@@ -151,8 +145,7 @@ TEST(AirBrake, AnEmergencyOvertakesTheServiceWave) {
     if (i * kPitch < caught) {
       EXPECT_GT(PressureOf(both, i, after), PressureOf(emergency, i, after)) << i;  // it had begun to brake
     } else {
-      EXPECT_EQ(PressureOf(both, i, after), PressureOf(emergency, i, after))
-          << i;  // only ever felt the emergency
+      EXPECT_EQ(PressureOf(both, i, after), PressureOf(emergency, i, after)) << i;  // only ever felt the emergency
     }
   }
 }
@@ -199,12 +192,10 @@ TEST(AirBrake, NothingButItsReleaseAfterTheBlockingTimeEndsAnEmergency) {
   EXPECT_EQ(History({Emergency(2.0), Emergency(30.0), Release(40.0), Release(62.0)}),
             History({Emergency(2.0), Release(62.0)}));
   // Once released the brake obeys again.
-  const std::vector<BrakeCommand> again = {Emergency(2.0), Apply(20.0, 90.0), Release(80.0),
-                                           Apply(120.0, 60.0)};
+  const std::vector<BrakeCommand> again = {Emergency(2.0), Apply(20.0, 90.0), Release(80.0), Apply(120.0, 60.0)};
   EXPECT_EQ(History(again), History({Emergency(2.0), Release(80.0), Apply(120.0, 60.0)}));
   EXPECT_NEAR(PressureOf(Brake(again), 0, 1000.0),
-              1e3 * MonotoneCubic(PaperBrake().service.reduction_kpa,
-                                  PaperBrake().service.cylinder_pressure_kpa, 60.0),
+              1e3 * MonotoneCubic(PaperBrake().service.reduction_kpa, PaperBrake().service.cylinder_pressure_kpa, 60.0),
               1.0);  // exp(-0.06 * 880)
 }
 
@@ -219,10 +210,9 @@ TEST(AirBrake, OfCommandsAtOneTimeTheStrongestHoldsInAnyOrder) {
   do {
     EXPECT_EQ(History(commands), emergency);
     std::vector<BrakeCommand> without = commands;
-    without.erase(
-        std::remove_if(without.begin(), without.end(),
-                       [](const BrakeCommand& c) { return c.kind == BrakeCommandKind::kEmergency; }),
-        without.end());
+    without.erase(std::remove_if(without.begin(), without.end(),
+                                 [](const BrakeCommand& c) { return c.kind == BrakeCommandKind::kEmergency; }),
+                  without.end());
     EXPECT_EQ(History(without), service);
   } while (std::next_permutation(commands.begin(), commands.end(), by_kind));
 }
@@ -274,12 +264,10 @@ TEST(AirBrake, TellsOfCommandsWithoutEffectAndOfReservoirs) {
             "commands[1].time_s: commands[1] has no effect: the emergency of commands[0] holds until a "
             "release at 62 s "
             "or later (brake.emergency.blocking_time_s)\n");
-  EXPECT_EQ(
-      of({Apply(2.0, 50.0), Emergency(2.0)}),
-      "commands[0].time_s: commands[0] has no effect: commands[1] at the same time is at least as strong\n");
+  EXPECT_EQ(of({Apply(2.0, 50.0), Emergency(2.0)}),
+            "commands[0].time_s: commands[0] has no effect: commands[1] at the same time is at least as strong\n");
   const std::string again = "applies the brake again after a release: the empirical brake has no reservoirs";
-  EXPECT_NE(of({Apply(2.0, 100.0), Release(9.0), Apply(20.0, 60.0)}).find("commands[2] " + again),
-            std::string::npos);
+  EXPECT_NE(of({Apply(2.0, 100.0), Release(9.0), Apply(20.0, 60.0)}).find("commands[2] " + again), std::string::npos);
   EXPECT_NE(of({Apply(2.0, 100.0), Apply(9.0, 60.0), Apply(20.0, 80.0)}).find("commands[2] " + again),
             std::string::npos);
   EXPECT_NE(of({Apply(2.0, 100.0), Release(9.0), Apply(20.0, 60.0), Release(29.0), Apply(40.0, 60.0)})
@@ -336,8 +324,7 @@ TEST(AirBrake, AnEmergencyInForceGoesOnThroughAnOpenPipe) {
   brake.OpenPipe(30.0, 100);
   const AirBrake emergency = Brake({Emergency(2.0)});
   for (int i = 0; i < kVehicles; i += 7) {
-    for (const double t : {20.0, 45.0, 150.0})
-      EXPECT_EQ(PressureOf(brake, i, t), PressureOf(emergency, i, t));
+    for (const double t : {20.0, 45.0, 150.0}) EXPECT_EQ(PressureOf(brake, i, t), PressureOf(emergency, i, t));
   }
 }
 
@@ -359,8 +346,8 @@ TEST(AirBrake, BetweenMeasurementsNothingOvershoots) {
     const double p = PressureOf(Brake({Apply(0.0, reduction)}), 0, 1e4);
     EXPECT_GT(p, before);  // the measured pressures ascend
     before = p;
-    const size_t k = std::upper_bound(s.reduction_kpa.begin(), s.reduction_kpa.end() - 1, reduction) -
-                     s.reduction_kpa.begin();
+    const size_t k =
+        std::upper_bound(s.reduction_kpa.begin(), s.reduction_kpa.end() - 1, reduction) - s.reduction_kpa.begin();
     EXPECT_GE(p, 1e3 * s.cylinder_pressure_kpa[k - 1] - 1e-6);
     EXPECT_LE(p, 1e3 * s.cylinder_pressure_kpa[k] + 1e-6);
   }
@@ -386,8 +373,7 @@ TEST(AirBrake, WrongInputIsRefused) {
   AirBrakeParams no_charger = PaperBrake();
   for (BrakeSourceParams& source : no_charger.sources) source.releases = false;
   EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Release(9.0)}, PaperTrain()), std::invalid_argument);
-  EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Apply(9.0, 60.0)}, PaperTrain()),
-               std::invalid_argument);
+  EXPECT_THROW(AirBrake(no_charger, {Apply(0.0, 70.0), Apply(9.0, 60.0)}, PaperTrain()), std::invalid_argument);
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ TEST_P(BrakeKernelsTest, FillCylindersAsTheScalarLawDoes) {
   for (int i = 0; i < 16; ++i) centres.push_back(-10.5 * i);
   AirBrakeParams params = LoadPart<BrakeSystemParams>("brakes/calibrated.yaml").empirical;
   params.sources = {{"lead", 1}};
-  const AirBrake brake(params, {{0.0, BrakeCommandKind::kEmergency}, {9.0, BrakeCommandKind::kRelease}},
-                       centres);
+  const AirBrake brake(params, {{0.0, BrakeCommandKind::kEmergency}, {9.0, BrakeCommandKind::kRelease}}, centres);
   const BrakePhases phases = brake.Phases();
   for (const double time_s : {0.0, 0.3, 5.0, 9.5, 30.0}) {
     std::vector<double> law(16), target(16), gap(16), decay(16), pressure(16);

@@ -60,8 +60,7 @@ SteadyMotion Measure(Ride& ride) {
 
 // sum m h + 4 J / r, from the paper's numbers.
 double MomentPerDeceleration() {
-  return 147599.8 * 2.0 + 2.0 * 1127.9 * 0.55 + 2.0 * 1665.5 * 0.485 + 4.0 * 1731.8 * 0.485 +
-         4.0 * 679.0 / 0.485;
+  return 147599.8 * 2.0 + 2.0 * 1127.9 * 0.55 + 2.0 * 1665.5 * 0.485 + 4.0 * 1731.8 * 0.485 + 4.0 * 679.0 / 0.485;
 }
 
 TEST(BrakeReaction, AxleLoadsBalanceTheAngularMomentumAboutTheRail) {
@@ -88,7 +87,8 @@ TEST(BrakeReaction, AxleLoadsBalanceTheAngularMomentumAboutTheRail) {
   }
 }
 
-// An emergency until the speed has fallen to 41.5 km/h: the moment, and what each wheelset has over a quarter of the weight.
+// An emergency until the speed has fallen to 41.5 km/h: the moment, and what each wheelset has over a quarter of the
+// weight.
 std::array<double, 5> AtFortyOne(BrakeReaction reaction) {
   Ride ride(With(reaction), {}, 80.0 / 3.6);
   ride.loads_at = EmergencyLoads;
@@ -138,8 +138,7 @@ TEST(BrakeReaction, WithinABogieTheFrameIsInBalance) {
         if (reaction == BrakeReaction::kFrame) torque += 0.485 * m.shoe[i];
       }
       const double pads = 0.975 * (m.normal[2 * bogie] - m.normal[2 * bogie + 1]);
-      EXPECT_NEAR(pads, torque + suspension, 10.0)
-          << "bogie " << bogie;  // of 17 kNm; shoe forces drift in 1 s
+      EXPECT_NEAR(pads, torque + suspension, 10.0) << "bogie " << bogie;  // of 17 kNm; shoe forces drift in 1 s
       EXPECT_GT(std::abs(suspension), 100.0);
     }
   }
@@ -154,9 +153,7 @@ TEST(BrakeReaction, ShoesOnTheCarbodyLeaveTheBogiesAlone) {
     m[k] = Measure(ride);
   }
   const auto within = [&](int k) { return m[k].normal[0] - m[k].normal[1]; };
-  const auto between = [&](int k) {
-    return m[k].normal[0] + m[k].normal[1] - m[k].normal[2] - m[k].normal[3];
-  };
+  const auto between = [&](int k) { return m[k].normal[0] + m[k].normal[1] - m[k].normal[2] - m[k].normal[3]; };
   const double s = m[0].shoe[0];
   // r S / l_w more on each wheelset of a bogie and less on its other, less some ten per cent.
   EXPECT_NEAR(within(0) - within(2), 2.0 * 0.485 * s / 0.975, 0.2 * s);
@@ -258,9 +255,7 @@ TEST(OreWagons, TheEmptyOneRestsOnItsSpringsAndAsksForMuchAdhesion) {
   const double rest = 9.81 * (15986.0 + 2.0 * 1127.9) / (8.0 * (1590e3 + kappa * kappa * 983e3));
   for (const double nest : e.nest) EXPECT_NEAR(nest, rest, 1e-6);
   EXPECT_LT(rest, 0.022);  // on the outer springs alone
-  const auto adhesion = [&](double kmh) {
-    return ShoeForce(p.Rigging(), kFullPressure, kmh / 3.6) / p.Weight();
-  };
+  const auto adhesion = [&](double kmh) { return ShoeForce(p.Rigging(), kFullPressure, kmh / 3.6) / p.Weight(); };
   EXPECT_NEAR(100.0 * adhesion(80.0), 16.9, 0.05);
   EXPECT_NEAR(100.0 * adhesion(0.0), 22.8, 0.05);
 }
@@ -384,10 +379,10 @@ void ExpectSlides(const Slides& slides, const std::array<double, kWheelsets>& fi
 TEST(LockOrder, TheShoesReactionLocksTheFourthThenTheSecondThenTheThirdNeverTheFirst) {
   // First above 20 % creepage [s] and distances locked [m] of an independent program; -1: never.
   const TrackParams track = Patches({{-1e3, 1e5, 0.1}});
-  ExpectSlides(Stop(Slippery(BrakeReaction::kFrame, FrictionSpeed::kTread, 1.3), track),
-               {-1.0, 28.0, 30.1, 24.6}, {0.0, 2.1, 0.1, 10.6});
-  ExpectSlides(Stop(Slippery(BrakeReaction::kFrame, FrictionSpeed::kVehicle, 1.3), track),
-               {-1.0, 28.2, 30.2, 25.0}, {0.0, 1.5, 0.1, 7.3});
+  ExpectSlides(Stop(Slippery(BrakeReaction::kFrame, FrictionSpeed::kTread, 1.3), track), {-1.0, 28.0, 30.1, 24.6},
+               {0.0, 2.1, 0.1, 10.6});
+  ExpectSlides(Stop(Slippery(BrakeReaction::kFrame, FrictionSpeed::kVehicle, 1.3), track), {-1.0, 28.2, 30.2, 25.0},
+               {0.0, 1.5, 0.1, 7.3});
   const Slides without = Stop(Slippery(BrakeReaction::kNone, FrictionSpeed::kVehicle, 1.3), track);
   const double none_m[] = {0.0, 0.2, 0.8, 2.6};
   for (int i = 0; i < kWheelsets; ++i) EXPECT_NEAR(without.locked_m[i], none_m[i], 0.2);

@@ -39,8 +39,8 @@ TEST(ShoeFrictionLaw, ValuesOfAnIndependentProgram) {
   const double at_80 = 80.0 / 3.6;
   const double composition[] = {0.28565, 0.25650, 0.23464};
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(ShoeFrictionByLaw(By(ShoeFrictionLaw::kComposition), at_80, (i + 1) * kTonneForce),
-                composition[i], 5e-6);
+    EXPECT_NEAR(ShoeFrictionByLaw(By(ShoeFrictionLaw::kComposition), at_80, (i + 1) * kTonneForce), composition[i],
+                5e-6);
   }
   const double cast_iron[] = {0.30244, 0.14114, 0.10888, 0.09505};
   for (int i = 0; i < 4; ++i) {
@@ -50,20 +50,17 @@ TEST(ShoeFrictionLaw, ValuesOfAnIndependentProgram) {
   const double temperature_c[] = {20.0, 149.0, 216.0, 400.0}, at_40[] = {0.3943, 0.3693, 0.2730, 0.2026};
   for (int i = 0; i < 4; ++i) {
     tos.shoe_temperature_c = temperature_c[i];
-    EXPECT_NEAR(ShoeFrictionByLaw(tos, 40.0 / 3.6, 20e3), at_40[i], 3e-4)
-        << temperature_c[i];  // whole degrees
+    EXPECT_NEAR(ShoeFrictionByLaw(tos, 40.0 / 3.6, 20e3), at_40[i], 3e-4) << temperature_c[i];  // whole degrees
   }
 }
 
 // AAR Train Operations Simulator at 300 F (Low & Garg 1977, as in the manual of the Train Performance Simulator).
 TEST(ShoeFrictionLaw, TosReproducesItsPublishedTable) {
   const double mph[] = {1, 3, 5, 7, 10, 20, 30, 40, 50, 60, 70, 80};
-  const double mu[] = {0.5568, 0.5028, 0.4700, 0.4479, 0.4249, 0.3820,
-                       0.3585, 0.3425, 0.3305, 0.3210, 0.3131, 0.3065};
+  const double mu[] = {0.5568, 0.5028, 0.4700, 0.4479, 0.4249, 0.3820, 0.3585, 0.3425, 0.3305, 0.3210, 0.3131, 0.3065};
   ShoeFrictionParams p = By(ShoeFrictionLaw::kTos);
   p.shoe_temperature_c = (300.0 - 32.0) / 1.8;
-  for (int i = 0; i < 12; ++i)
-    EXPECT_NEAR(ShoeFrictionByLaw(p, 0.44704 * mph[i], 1e4), mu[i], 1e-4) << mph[i];
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(ShoeFrictionByLaw(p, 0.44704 * mph[i], 1e4), mu[i], 1e-4) << mph[i];
   EXPECT_EQ(ShoeFrictionByLaw(p, 0.0, 1e4), ShoeFrictionByLaw(p, 0.44704, 1e4));  // below 1 mph
 }
 
@@ -92,8 +89,8 @@ TEST(ShoeFrictionLaw, GivesTheBitsOfDoubleInLanes) {
   ShoeFrictionParams table = By(ShoeFrictionLaw::kTable);
   table.table.speed_kmh = {0.0, 36.0, 72.0};
   table.table.curves = {{10.0, {0.4, 0.3, 0.2}}, {20.0, {0.3, 0.2, 0.1}}};
-  for (const ShoeFrictionParams& p : {By(ShoeFrictionLaw::kComposition), By(ShoeFrictionLaw::kCastIron),
-                                      By(ShoeFrictionLaw::kTos), table}) {
+  for (const ShoeFrictionParams& p :
+       {By(ShoeFrictionLaw::kComposition), By(ShoeFrictionLaw::kCastIron), By(ShoeFrictionLaw::kTos), table}) {
     for (double v = -30.0; v < 30.0; v += 0.713) {
       const double speeds[] = {v, 1.3 * v, 0.0, v + 1.0}, loads[] = {0.0, 1e4, 2e4, 2.7e4};
       double together[4];
@@ -143,9 +140,7 @@ TEST(BrakeRigging, NetBrakingRatioAndLoadSensing) {
   p.load_sensing->full_mass_kg = 160e3;
   EXPECT_THROW(strict_config::Validate(p), std::invalid_argument);
   p.shoe_load = ShoeLoadForm::kPerPressure;
-  const auto load = [&p](double mass_kg) {
-    return ShoeLoad(BrakeRigging(p, mass_kg, 9.81 * mass_kg), 430e3);
-  };
+  const auto load = [&p](double mass_kg) { return ShoeLoad(BrakeRigging(p, mass_kg, 9.81 * mass_kg), 430e3); };
   const double full = 0.46035 * 430e3;
   EXPECT_NEAR(load(160e3), full, 1e-9);
   EXPECT_NEAR(load(200e3), full, 1e-9);
@@ -160,7 +155,8 @@ TEST(BrakeRigging, NetBrakingRatioAndLoadSensing) {
 }
 
 // Eq 3 at constant pressure, no resistance:
-//   s = (m + m_e) / (12.96 C p mu_0) [k^2 - 150 k + 22500 ln(1 + k / 150)],  t = (m + m_e) / (3.6 C p mu_0) [2 k - 150 ln(1 + k / 150)]
+//   s = (m + m_e) / (12.96 C p mu_0) [k^2 - 150 k + 22500 ln(1 + k / 150)],  t = (m + m_e) / (3.6 C p mu_0) [2 k - 150
+//   ln(1 + k / 150)]
 TEST(BrakeRigging, StopAtConstantPressure) {
   VehicleParams p = OreWagon();
   p.propulsion_resistance = {0.0, 0.0, 0.0};
@@ -237,8 +233,7 @@ TEST(IcyShoes, WarmUpAsTheClosedFormSays) {
   const double force = 0.25 * 0.46035 * 400e3, all_j = 8.0 * 1.5e6;
   const double gone_m = all_j * std::log(1.0 / 0.6) / (0.4 * force);
   const auto energy_at = [&](double x) {
-    return x < gone_m ? all_j * 1.5 * (std::exp(0.4 * force * x / all_j) - 1.0)
-                      : all_j + force * (x - gone_m);
+    return x < gone_m ? all_j * 1.5 * (std::exp(0.4 * force * x / all_j) - 1.0) : all_j + force * (x - gone_m);
   };
   EXPECT_NEAR(energy_at(gone_m), all_j, 1e-6 * all_j);
   const LtdVehicle vehicle(p, true);
@@ -251,8 +246,7 @@ TEST(IcyShoes, WarmUpAsTheClosedFormSays) {
     EXPECT_NEAR(s.work.dissipated[kBrakeShoes], energy_at(s.x_m), 1e-4 * energy_at(x)) << x;  // steps
     while (ride.Distance() < x) ride.Step(1e-3);
     // Creep: the tread goes a little less far than the vehicle.
-    EXPECT_NEAR(ride.state.work.dissipated[kBrakeShoes], energy_at(ride.Distance()), 3e-3 * energy_at(x))
-        << x;
+    EXPECT_NEAR(ride.state.work.dissipated[kBrakeShoes], energy_at(ride.Distance()), 3e-3 * energy_at(x)) << x;
   }
 }
 

@@ -28,8 +28,7 @@ TEST(BrakeSystem, TheEmpiricalBrakeGivesTheLawsPressures) {
     brake.PressuresAt(time_s, pressure_pa);
     AirBrake(params.empirical, commands, centres).PressuresAt(time_s, law_pa);
     ASSERT_EQ(pressure_pa.size(), 3u);
-    for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(pressure_pa[i], law_pa[i], 1e-8) << time_s;  // rounding of 250 kPa
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(pressure_pa[i], law_pa[i], 1e-8) << time_s;  // rounding of 250 kPa
   }
   EXPECT_EQ(StateOf(brake), std::vector<double>());
 }

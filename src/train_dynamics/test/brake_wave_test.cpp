@@ -25,8 +25,7 @@ TEST(FirstWave, TheEarliestOfSeveralSourcesCounts) {
 }
 
 TEST(FirstWave, DependsOnTheDistanceOnlyNotOnTheSideOrTheOrigin) {
-  EXPECT_EQ(FirstWave(0.0, 300.0, {{100.0, 0.0}}, 50.0).time_s,
-            FirstWave(0.0, -100.0, {{100.0, 0.0}}, 50.0).time_s);
+  EXPECT_EQ(FirstWave(0.0, 300.0, {{100.0, 0.0}}, 50.0).time_s, FirstWave(0.0, -100.0, {{100.0, 0.0}}, 50.0).time_s);
   EXPECT_EQ(FirstWave(0.0, 1300.0, {{1100.0, 0.0}}, 50.0).time_s, 4.0);
 }
 

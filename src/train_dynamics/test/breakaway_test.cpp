@@ -89,8 +89,7 @@ Started Start(const std::string& model, double grade_percent, const std::string&
   std::vector<std::string> set = {
       "model=" + model, "initial_speed_kmh=0", "commands=[]", "duration_s=60",
       "track={name: fall, grades: [{from_m: 0, grade_percent: " + std::to_string(grade_percent) + "}]}"};
-  if (!breakaway.empty())
-    set.push_back("train.consist[0].vehicle.propulsion_resistance.breakaway=" + breakaway);
+  if (!breakaway.empty()) set.push_back("train.consist[0].vehicle.propulsion_resistance.breakaway=" + breakaway);
   const Outcome outcome = Simulate("single_wagon_stop", set);
   Started started{outcome.mean_speed_kmh, 0.0, outcome.ledger.gravity_work_j};
   for (const auto& [element, energy] : outcome.ledger.dissipated_j)
@@ -98,8 +97,8 @@ Started Start(const std::string& model, double grade_percent, const std::string&
   return started;
 }
 
-// The paper's resistance at rest, 0.92 N/kN, holds a wagon on 0.09 % and lets it go on 0.1 %; bearings that resist more by
-// 142 / (q0 + 7) = 3.0194 N/kN hold it up to 0.30194 %.
+// The paper's resistance at rest, 0.92 N/kN, holds a wagon on 0.09 % and lets it go on 0.1 %; bearings that resist more
+// by 142 / (q0 + 7) = 3.0194 N/kN hold it up to 0.30194 %.
 TEST(Breakaway, DecidesOnWhichGradeAWagonStarts) {
   EXPECT_NEAR(kPlain, 3.0194, 1e-4);
   for (const std::string model : {"ltd", "2d"}) {
@@ -107,8 +106,7 @@ TEST(Breakaway, DecidesOnWhichGradeAWagonStarts) {
     EXPECT_GT(Start(model, -0.1, "").speed_kmh, 0.05) << model;
     EXPECT_LT(std::abs(Start(model, -0.298, "{law: plain_bearings}").speed_kmh), 0.01) << model;
     EXPECT_GT(Start(model, -0.306, "{law: plain_bearings}").speed_kmh, 0.05) << model;
-    EXPECT_LT(std::abs(Start(model, -0.49, "{law: constant, constant_n_per_kn: 5}").speed_kmh), 0.01)
-        << model;
+    EXPECT_LT(std::abs(Start(model, -0.49, "{law: constant, constant_n_per_kn: 5}").speed_kmh), 0.01) << model;
   }
 }
 
@@ -122,17 +120,17 @@ TEST(Breakaway, WeakerThanTheLawChangesNothing) {
   }
 }
 
-// Constant forces: over the first metre W (g - w), then W (g - a - b k): the energy that the start takes beyond the law.
+// Constant forces: over the first metre W (g - w), then W (g - a - b k): the energy that the start takes beyond the
+// law.
 TEST(Breakaway, TakesItsWorkOverTheFirstMetre) {
   const double weight_n = 9.81 * kMassKg;
   for (const std::string model : {"ltd", "2d"}) {
-    const Outcome outcome =
-        Simulate("single_wagon_stop",
-                 {"model=" + model, "initial_speed_kmh=0", "commands=[]", "duration_s=90",
-                  "track={name: fall, grades: [{from_m: 0, grade_percent: -0.5}]}",
-                  "train.consist[0].vehicle.propulsion_resistance={law: abc, constant_n_per_kn: 1, "
-                  "linear_n_per_kn_kmh: 0, quadratic_n_per_kn_kmh2: 0, breakaway: {law: constant, "
-                  "constant_n_per_kn: 4, distance_m: 2}}"});
+    const Outcome outcome = Simulate("single_wagon_stop",
+                                     {"model=" + model, "initial_speed_kmh=0", "commands=[]", "duration_s=90",
+                                      "track={name: fall, grades: [{from_m: 0, grade_percent: -0.5}]}",
+                                      "train.consist[0].vehicle.propulsion_resistance={law: abc, constant_n_per_kn: 1, "
+                                      "linear_n_per_kn_kmh: 0, quadratic_n_per_kn_kmh2: 0, breakaway: {law: constant, "
+                                      "constant_n_per_kn: 4, distance_m: 2}}"});
     double rolling_j = 0.0;
     for (const auto& [element, energy] : outcome.ledger.dissipated_j)
       if (element == "rolling_resistance") rolling_j = energy;

@@ -99,8 +99,7 @@ TEST(DriversTrain, KnowsMassEffortAndBrake) {
   EXPECT_GT(first_n, 0.0);
   EXPECT_GT(largest_n, first_n);
   EXPECT_GT(train.BrakeForce(p, 95.0, 10.0), first_n);
-  EXPECT_GT(train.BrakeForce(p, 50.0, 1.0),
-            train.BrakeForce(p, 50.0, 25.0));  // friction falls with the speed
+  EXPECT_GT(train.BrakeForce(p, 50.0, 1.0), train.BrakeForce(p, 50.0, 25.0));  // friction falls with the speed
   EXPECT_EQ(train.ApplicationShare(0.0), 0.0);
   EXPECT_NEAR(train.ApplicationShare(60.0), 1.0, 0.01);
 }
@@ -129,13 +128,13 @@ struct Trip {
 /// The 2 km train on a stretch of the ore line, by the shipped scenario.
 std::vector<std::string> OreLine(const std::string& from_m, const std::string& speed_kmh,
                                  const std::string& duration_s) {
-  return {"until=null", "start_position_m=" + from_m, "initial_speed_kmh=" + speed_kmh,
-          "duration_s=" + duration_s, "ledger_interval_s=1"};
+  return {"until=null", "start_position_m=" + from_m, "initial_speed_kmh=" + speed_kmh, "duration_s=" + duration_s,
+          "ledger_interval_s=1"};
 }
 
 std::vector<std::string> Driven(const std::vector<std::string>& more) {
-  std::vector<std::string> overrides = {"commands=[]", "until=null", "dt_s=0.005",
-                                        "exchange_interval_s=0.005", "record_interval_s=1"};
+  std::vector<std::string> overrides = {"commands=[]", "until=null", "dt_s=0.005", "exchange_interval_s=0.005",
+                                        "record_interval_s=1"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return overrides;
 }
@@ -185,20 +184,20 @@ TEST(BuiltInDriver, HoldsASpeedOnTheLevelAndUphill) {
 
 TEST(BuiltInDriver, HoldsASpeedDownhillWithTheDynamicBrake) {
   // A C44AC before ten loaded hoppers down 1 percent: some 110 kN, which the dynamic brake gives alone.
-  const Trip trip = TripOf(
-      {"train={name: short, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 10}]}",
-       "track={name: down, grades: [{from_m: -1000, grade_percent: -1}]}", "initial_speed_kmh=60",
-       "driver={speed_kmh: 60}", "duration_s=600"});
+  const Trip trip =
+      TripOf({"train={name: short, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 10}]}",
+              "track={name: down, grades: [{from_m: -1000, grade_percent: -1}]}", "initial_speed_kmh=60",
+              "driver={speed_kmh: 60}", "duration_s=600"});
   EXPECT_LT(trip.Largest(200.0, 60.0), 1.0);
   EXPECT_TRUE(Gives(trip, DriverCommandKind::kDynamicBrake));
   EXPECT_FALSE(Gives(trip, DriverCommandKind::kApply));
 }
 
 TEST(BuiltInDriver, TakesTheAirBrakeWhereTheDynamicBrakeIsTooWeak) {
-  const Trip trip = TripOf(
-      {"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
-       "track={name: down, grades: [{from_m: -3000, grade_percent: -1.2}]}", "brake=head_end",
-       "initial_speed_kmh=50", "driver={speed_kmh: 50}", "duration_s=900"});
+  const Trip trip =
+      TripOf({"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
+              "track={name: down, grades: [{from_m: -3000, grade_percent: -1.2}]}", "brake=head_end",
+              "initial_speed_kmh=50", "driver={speed_kmh: 50}", "duration_s=900"});
   EXPECT_TRUE(Gives(trip, DriverCommandKind::kApply));
   // A brake that can only be released as a whole is applied again and again: the speed falls far, but hardly rises.
   double fastest_kmh = 0.0, slowest_kmh = 100.0;
@@ -224,9 +223,8 @@ TEST(BuiltInDriver, KeepsBelowLimitsAndStopsAtAPlace) {
 }
 
 TEST(BuiltInDriver, GoesOnAfterAStop) {
-  const Trip trip =
-      TripOf({"driver={speed_kmh: 40, stops: [{position_m: 1500, dwell_s: 60}, {position_m: 3000}]}",
-              "duration_s=900"});
+  const Trip trip = TripOf(
+      {"driver={speed_kmh: 40, stops: [{position_m: 1500, dwell_s: 60}, {position_m: 3000}]}", "duration_s=900"});
   double stood_s = 0.0;
   for (std::size_t i = 0; i < trip.time_s.size(); ++i) {
     if (std::abs(trip.position_m[i] - 1500.0) < 5.0 && std::abs(trip.speed_kmh[i]) < 0.01) stood_s += 1.0;
@@ -237,17 +235,17 @@ TEST(BuiltInDriver, GoesOnAfterAStop) {
 }
 
 TEST(BuiltInDriver, StopsATrainOfManyWagonsAndOneThatIsLight) {
-  const Trip heavy = TripOf(
-      {"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
-       "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 4000}]}",
-       "duration_s=900"});
+  const Trip heavy =
+      TripOf({"train={name: heavy, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper, count: 60}]}",
+              "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 4000}]}",
+              "duration_s=900"});
   EXPECT_LT(std::abs(heavy.end_mps), 1e-6);
   EXPECT_NEAR(heavy.end_m, 4000.0, 10.0);
-  const Trip light = TripOf(
-      {"train={name: light, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper_empty, count: "
-       "20}]}",
-       "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 3000}]}",
-       "duration_s=700"});
+  const Trip light =
+      TripOf({"train={name: light, connection: mt2, consist: [{vehicle: c44ac}, {vehicle: hopper_empty, count: "
+              "20}]}",
+              "brake=head_end", "initial_speed_kmh=40", "driver={speed_kmh: 40, stops: [{position_m: 3000}]}",
+              "duration_s=700"});
   EXPECT_LT(std::abs(light.end_mps), 1e-6);
   EXPECT_NEAR(light.end_m, 3000.0, 10.0);
 }
@@ -268,8 +266,7 @@ TEST(BuiltInDriver, TakesATrainOfTwoKilometresOverTheOreLine) {
 }
 
 TEST(BuiltInDriver, DoesNothingAfterAnEmergency) {
-  const Trip trip =
-      TripOf({"commands=[{time_s: 30, kind: emergency}]", "driver={speed_kmh: 40}", "duration_s=200"});
+  const Trip trip = TripOf({"commands=[{time_s: 30, kind: emergency}]", "driver={speed_kmh: 40}", "duration_s=200"});
   EXPECT_LT(std::abs(trip.end_mps), 1e-6);
   for (const GivenCommand& given : trip.given) {
     if (given.exchange < 6000) continue;
@@ -336,8 +333,7 @@ TEST(GroupNames, OfCommandsMeanTheirLocomotives) {
   EXPECT_EQ(named.digest, numbered.digest);
   EXPECT_NE(named.digest, all.digest);
   const std::string error = ErrorsOf({train, commands + "group: remot}]"});
-  EXPECT_NE(error.find("must be the name of a group of locomotives of the train: lead, remote"),
-            std::string::npos)
+  EXPECT_NE(error.find("must be the name of a group of locomotives of the train: lead, remote"), std::string::npos)
       << error;
 }
 
@@ -359,8 +355,7 @@ TEST(GroupNames, OfLocomotiveBrakesMeanLocomotivesWithoutTraction) {
   EXPECT_EQ(trip_of("group: dead").digest, trip_of("vehicles: [5, 6]").digest);
   EXPECT_NE(trip_of("group: dead").digest, trip_of("group: lead").digest);
   const std::string error = ErrorsOf({train, commands("throttle, notch: 4", "group: dead")});
-  EXPECT_NE(error.find("must be the name of a group of locomotives of the train: lead"), std::string::npos)
-      << error;
+  EXPECT_NE(error.find("must be the name of a group of locomotives of the train: lead"), std::string::npos) << error;
 }
 
 TEST(StartStates, TheBrakeHasItsPressureAndHoldsTheTrainOnAGrade) {
@@ -376,19 +371,16 @@ TEST(StartStates, TheBrakeHasItsPressureAndHoldsTheTrainOnAGrade) {
 }
 
 TEST(StartStates, LocomotivesBeginWithTheSteadyEffortOfTheirNotch) {
-  const config::LoadedScenario loaded =
-      config::LoadScenario(ScenarioFile("drive_and_stop"),
-                           Driven({"train.consist[0].initial_throttle_notch=5", "initial_speed_kmh=30"}));
+  const config::LoadedScenario loaded = config::LoadScenario(
+      ScenarioFile("drive_and_stop"), Driven({"train.consist[0].initial_throttle_notch=5", "initial_speed_kmh=30"}));
   InProcessTransport transport(loaded.params, loaded.consist, 1);
   TrainMaster master(loaded.params, loaded.consist, transport, loaded.pressures);
   master.Start();
   const VehicleParams& locomotive = loaded.consist.vehicle(0);
-  EXPECT_DOUBLE_EQ(
-      master.locomotives().drive(0).effort_n,
-      TractiveEffort(locomotive.traction->tractive_effort, 5, 30.0 / 3.6, locomotive.DrivenWeight()));
-  EXPECT_NE(
-      ErrorsOf({"train.consist[1].initial_throttle_notch=5"}).find("train.consist[1].initial_throttle_notch"),
-      std::string::npos);
+  EXPECT_DOUBLE_EQ(master.locomotives().drive(0).effort_n,
+                   TractiveEffort(locomotive.traction->tractive_effort, 5, 30.0 / 3.6, locomotive.DrivenWeight()));
+  EXPECT_NE(ErrorsOf({"train.consist[1].initial_throttle_notch=5"}).find("train.consist[1].initial_throttle_notch"),
+            std::string::npos);
 }
 
 TEST(StartStates, SlackOfAGroupIsInFrontOfItsVehicles) {

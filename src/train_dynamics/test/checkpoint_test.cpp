@@ -35,8 +35,8 @@ struct TestRun {
       summary.Observe(record);
       if (record.exchange == 0) first_position_m = record.mean_position_m;
       zero = record.at_time_zero;
-      seen.push_back({record.exchange, record.state_digest, record.held.coupler_force_n,
-                      record.acceleration_mps2, record.vehicles.speed_mps, record.vehicles.shoe_force_n});
+      seen.push_back({record.exchange, record.state_digest, record.held.coupler_force_n, record.acceleration_mps2,
+                      record.vehicles.speed_mps, record.vehicles.shoe_force_n});
     });
   }
   // Runs on; leaves the checkpoint of an exchange.
@@ -54,9 +54,8 @@ struct TestRun {
     std::string text = std::to_string(summary.state_digest());
     const auto add = [&text](double number) { text += " " + ShortestDecimal(number); };
     for (const double number : summary.Memory()) add(number);
-    for (const double number :
-         {summary.mean_speed_mps(), summary.lead_speed_mps(), summary.tail_speed_mps(),
-          summary.mean_distance_m(), summary.ResidualShare(master), summary.left_route_s()})
+    for (const double number : {summary.mean_speed_mps(), summary.lead_speed_mps(), summary.tail_speed_mps(),
+                                summary.mean_distance_m(), summary.ResidualShare(master), summary.left_route_s()})
       add(number);
     for (const ForceExtremes& of : master.in_train_forces().Extremes()) {
       for (const double number : {of.tension_n, of.tension_time_s, of.compression_n, of.compression_time_s})
@@ -110,7 +109,7 @@ TEST_P(CheckpointTest, ARunGoesOnToTheSameBits) {
   EXPECT_EQ(whole.zero.mean_position_m, resumed.zero.mean_position_m);
   EXPECT_EQ(whole.zero.stored_energy_j, resumed.zero.stored_energy_j);
   EXPECT_EQ(whole.zero.mean_position_m, whole.first_position_m);  // what observers were shown at time 0
-  EXPECT_NE(whole.zero.stored_energy_j, 0.0);  // below 0 where a wagon stands on its springs
+  EXPECT_NE(whole.zero.stored_energy_j, 0.0);                     // below 0 where a wagon stands on its springs
   EXPECT_EQ(whole.Summary(), resumed.Summary());
 }
 
@@ -129,9 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
              "low_adhesion_stop",
              {"train.consist[0].vehicle=ore_wagon_empty", "train.consist[0].count=3", "duration_s=20"}},
         Case{"Ltd", "emergency", {"model=ltd", "duration_s=20"}},
-        Case{"NewmarkWithoutInertia",
-             "full_service",
-             {"model=ltd-no-inertia", "integrator=newmark", "duration_s=20"}},
+        Case{"NewmarkWithoutInertia", "full_service", {"model=ltd-no-inertia", "integrator=newmark", "duration_s=20"}},
         Case{"StickSpringsRemember",
              "emergency",
              {"model=ltd", "duration_s=20", "train.connection.draft_gear.friction=stick_spring"}},
@@ -139,15 +136,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"Mixed",
              "emergency",
              {"duration_s=6", "train.consist[0].model=ltd", "train.consist[1].model=ltd-no-inertia"}},
-        Case{"DampedGearsRemember",
-             "emergency",
-             {"model=ltd", "duration_s=20", "train.connection=friction_gear"}},
-        Case{"DifferentGearsRemember",
-             "emergency",
-             {"model=ltd", "duration_s=10", "train.connection=mt2_and_polymer"}},
-        Case{"BuffersRemember",
-             "emergency",
-             {"model=ltd", "duration_s=10", "train.connection=side_buffers_b"}},
+        Case{"DampedGearsRemember", "emergency", {"model=ltd", "duration_s=20", "train.connection=friction_gear"}},
+        Case{"DifferentGearsRemember", "emergency", {"model=ltd", "duration_s=10", "train.connection=mt2_and_polymer"}},
+        Case{"BuffersRemember", "emergency", {"model=ltd", "duration_s=10", "train.connection=side_buffers_b"}},
         // Broken connections, and the emergency that their open pipes are.
         Case{"PartedTrains",
              "full_service",
@@ -189,8 +180,7 @@ std::string WhyNotResumed(const TrainCheckpoint& checkpoint, const std::vector<s
 
 TEST(Checkpoint, ThatDoesNotFitIsRefused) {
   EXPECT_EQ(WhyNotResumed(ShortCheckpoint(), {"model=ltd", "duration_s=1"}), "");
-  EXPECT_NE(WhyNotResumed(ShortCheckpoint(), {"model=2d", "duration_s=1"}).find("vehicle"),
-            std::string::npos);
+  EXPECT_NE(WhyNotResumed(ShortCheckpoint(), {"model=2d", "duration_s=1"}).find("vehicle"), std::string::npos);
   EXPECT_NE(WhyNotResumed(ShortCheckpoint(), {"model=ltd", "duration_s=0.5"}).find("nothing to run"),
             std::string::npos);
   TrainCheckpoint other = ShortCheckpoint();

@@ -13,8 +13,7 @@
 namespace train_dynamics {
 namespace {
 
-DriverCommand Conditional(const ConditionParams& when,
-                          DriverCommandKind kind = DriverCommandKind::kEmergency) {
+DriverCommand Conditional(const ConditionParams& when, DriverCommandKind kind = DriverCommandKind::kEmergency) {
   DriverCommand command;
   command.kind = kind;
   command.when = when;
@@ -22,8 +21,7 @@ DriverCommand Conditional(const ConditionParams& when,
 }
 
 /// The exchanges at which commands are given to a train that moves so: position and speed at each exchange of 1 s.
-std::vector<std::uint64_t> GivenAt(CommandSchedule& schedule,
-                                   const std::vector<std::pair<double, double>>& motion) {
+std::vector<std::uint64_t> GivenAt(CommandSchedule& schedule, const std::vector<std::pair<double, double>>& motion) {
   std::vector<std::uint64_t> at;
   for (std::size_t i = 0; i < motion.size(); ++i) {
     std::vector<GivenCommand> given;
@@ -51,8 +49,7 @@ TEST(CommandSchedule, SpeedsAreMagnitudesAndTheDelayCountsFromTheFirstTime) {
   slow.speed_below_kmh = 36.0;
   slow.delay_s = 2.0;
   CommandSchedule schedule({Conditional(slow)}, std::nullopt);
-  EXPECT_EQ(GivenAt(schedule, {{0, -20}, {0, -10}, {0, -9.9}, {0, -20}, {0, -20}}),
-            (std::vector<std::uint64_t>{4}));
+  EXPECT_EQ(GivenAt(schedule, {{0, -20}, {0, -10}, {0, -9.9}, {0, -20}, {0, -20}}), (std::vector<std::uint64_t>{4}));
   ConditionParams fast;
   fast.speed_above_kmh = 36.0;
   CommandSchedule other({Conditional(fast)}, std::nullopt);
@@ -68,10 +65,8 @@ TEST(CommandSchedule, StandingIsSeenAtAChangeOfSign) {
 
 TEST(CommandSchedule, TheListIsReadAsAnInstruction) {
   // The second place lies before the first: it is watched for only after the first was passed, on the way back.
-  CommandSchedule schedule({Conditional(At(20.0)), Conditional(At(10.0), DriverCommandKind::kRelease)},
-                           std::nullopt);
-  EXPECT_EQ(GivenAt(schedule, {{0, 5}, {15, 5}, {25, 5}, {15, -5}, {5, -5}}),
-            (std::vector<std::uint64_t>{2, 4}));
+  CommandSchedule schedule({Conditional(At(20.0)), Conditional(At(10.0), DriverCommandKind::kRelease)}, std::nullopt);
+  EXPECT_EQ(GivenAt(schedule, {{0, 5}, {15, 5}, {25, 5}, {15, -5}, {5, -5}}), (std::vector<std::uint64_t>{2, 4}));
   DriverCommand timed;
   timed.kind = DriverCommandKind::kRelease;
   timed.time_s = 3.0;
@@ -83,8 +78,7 @@ TEST(CommandSchedule, TheEndAtStandstillNeedsATrainThatHasMoved) {
   ConditionParams standing;
   standing.standing = true;
   CommandSchedule schedule({}, standing);
-  const std::vector<std::pair<double, bool>> speeds = {
-      {0.0, false}, {0.5, false}, {0.01, false}, {0.0005, true}};
+  const std::vector<std::pair<double, bool>> speeds = {{0.0, false}, {0.5, false}, {0.01, false}, {0.0005, true}};
   std::vector<GivenCommand> given;
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     schedule.Judge({i, static_cast<double>(i), 0.0, speeds[i].first}, given);
@@ -132,8 +126,7 @@ struct Driven {
         master(scenario.params, scenario.consist, vehicles, scenario.pressures) {
     master.AddObserver([this](const TrainRecord& record) { last = record; });
   }
-  static std::vector<std::string> Overrides(const std::vector<std::string>& more,
-                                            const std::string& commands) {
+  static std::vector<std::string> Overrides(const std::vector<std::string>& more, const std::string& commands) {
     std::vector<std::string> overrides = {"model=ltd",
                                           "brake=single_vehicle",
                                           "duration_s=30",
@@ -179,10 +172,9 @@ TEST(LiveCommands, AreRepeatedToTheBitAsCommandsOfExchanges) {
   repeated.master.Start();
   repeated.RunUntil(30000);
   EXPECT_EQ(live.master.state_digest(), repeated.master.state_digest());
-  Driven later(
-      {},
-      "[{time_s: 1, kind: apply, reduction_kpa: 50}, {exchange: 2346, kind: apply, reduction_kpa: 100}, "
-      "{exchange: 9003, kind: release}]");
+  Driven later({},
+               "[{time_s: 1, kind: apply, reduction_kpa: 50}, {exchange: 2346, kind: apply, reduction_kpa: 100}, "
+               "{exchange: 9003, kind: release}]");
   later.master.Start();
   later.RunUntil(30000);
   EXPECT_NE(live.master.state_digest(), later.master.state_digest());
@@ -252,10 +244,9 @@ TEST(Conditions, ThatNeverComeTrueAreTold) {
                "reduction_kpa: 100}, {exchange: 5000, kind: emergency}]");
   train.master.Start();
   train.RunUntil(1000);
-  EXPECT_EQ(
-      train.master.schedule().NotGiven(),
-      (std::vector<std::string>{"commands[1] (apply 100 kPa) was not given: its condition did not come true",
-                                "commands[2] (emergency) was not given: the run ended before its exchange"}));
+  EXPECT_EQ(train.master.schedule().NotGiven(),
+            (std::vector<std::string>{"commands[1] (apply 100 kPa) was not given: its condition did not come true",
+                                      "commands[2] (emergency) was not given: the run ended before its exchange"}));
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ constexpr int kCount = 16;
 // Sixteen connections of a law from deep compression to deep tension, at rest, opening and closing.
 struct Connections {
   explicit Connections(const ConnectionLaw& law) {
-    for (const char* name : {"rate", "force", "elastic", "tension", "tension_time", "compression",
-                             "compression_time", "stored", "dissipated"}) {
+    for (const char* name : {"rate", "force", "elastic", "tension", "tension_time", "compression", "compression_time",
+                             "stored", "dissipated"}) {
       numbers[name].assign(kCount, 0.0);
     }
     numbers["parted"].assign(kCount, -1.0);
@@ -32,8 +32,7 @@ struct Connections {
     }
     const auto remember = [&](const auto& of) {
       auto memory = of.AtRest(0.0);
-      memory.ForEachField(
-          [&](double field) { numbers["memory"].insert(numbers["memory"].end(), kCount, field); });
+      memory.ForEachField([&](double field) { numbers["memory"].insert(numbers["memory"].end(), kCount, field); });
     };
     std::visit(remember, law);
   }
@@ -61,8 +60,7 @@ struct Connections {
 
 std::vector<ConnectionParams> AllConnections() {
   std::vector<ConnectionParams> all;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/couplers")) {
+  for (const auto& file : std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/couplers")) {
     all.push_back(LoadPart<ConnectionParams>("couplers/" + file.path().filename().string()));
   }
   all.push_back(LoadPart<ConnectionParams>("couplers/calibrated.yaml"));
@@ -77,8 +75,7 @@ TEST(RowKernels, TakeFromTheTrainAndGiveToIt) {
         std::vector<double> x, offset;
         for (int i = 0; i <= count * stride; ++i) x.push_back(std::sin(1.0 + i));
         for (int i = 0; i < count; ++i) offset.push_back(1e3 * std::cos(i));
-        std::vector<double> difference(count), sum(count), spread(count * stride + 1, -7.0),
-            expected = spread;
+        std::vector<double> difference(count), sum(count), spread(count * stride + 1, -7.0), expected = spread;
         kernels.differences(count, stride, x.data(), difference.data());
         kernels.offset_differences(count, stride, x.data(), offset.data(), sum.data());
         kernels.spread(count, stride, offset.data(), spread.data());

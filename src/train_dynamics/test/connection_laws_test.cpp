@@ -23,8 +23,7 @@ ConnectionParams Connection(const std::string& name) {
 /// All that the project ships.
 std::vector<ConnectionParams> Shipped() {
   std::vector<ConnectionParams> shipped;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/couplers")) {
+  for (const auto& file : std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/couplers")) {
     shipped.push_back(Connection(file.path().stem().string()));
   }
   return shipped;
@@ -132,8 +131,7 @@ TEST(TableGear, TakesOtherTablesInCompression) {
     StickState<double> memory = both.AtRest(0.0), expected = alone.AtRest(0.0);
     for (int i = 0; i < 200; ++i) {
       const double q = side * 0.1 * std::abs(std::sin(0.05 * i)), rate = 0.1 * std::cos(0.3 * i);
-      EXPECT_EQ(ConnectionForce(both, q, rate, memory).force,
-                ConnectionForce(alone, q, rate, expected).force);
+      EXPECT_EQ(ConnectionForce(both, q, rate, memory).force, ConnectionForce(alone, q, rate, expected).force);
       EXPECT_EQ(StoredEnergy(both, q, memory), StoredEnergy(alone, q, expected));
     }
   }
@@ -204,8 +202,7 @@ TEST(TableGear, BadTablesAreRefused) {
 TEST(UnequalGears, OfTwoEqualOnesAreAPair) {
   const DraftGearParams gear = Connection("mt2").draft_gear;
   const DampedStickGears pair(gear);
-  const UnequalGears<FrictionDevice, FrictionDevice> two{gear.slack_m, FrictionDevice(gear),
-                                                         FrictionDevice(gear)};
+  const UnequalGears<FrictionDevice, FrictionDevice> two{gear.slack_m, FrictionDevice(gear), FrictionDevice(gear)};
   EXPECT_NEAR(two.Stiffness(), pair.Stiffness(), 1e-3);
   std::mt19937_64 random(7);
   const std::vector<double> path = RandomPath(random, 0.12, 20, 400);
@@ -214,8 +211,7 @@ TEST(UnequalGears, OfTwoEqualOnesAreAPair) {
   for (std::size_t i = 1; i < path.size(); ++i) {
     const double rate = 20.0 * (path[i] - path[i - 1]);
     const double force = ConnectionForce(pair, path[i], rate, expected).force;
-    ASSERT_NEAR(ConnectionForce(two, path[i], rate, memory).force, force, 1e-9 * 1e9 + 1e-9 * std::abs(force))
-        << i;
+    ASSERT_NEAR(ConnectionForce(two, path[i], rate, memory).force, force, 1e-9 * 1e9 + 1e-9 * std::abs(force)) << i;
     ASSERT_NEAR(StoredEnergy(two, path[i], memory), StoredEnergy(pair, path[i], expected), 1.0) << i;
   }
 }
@@ -242,8 +238,7 @@ TEST(SideBuffers, UseUpTheirEnergyInAnImpact) {
     double energy_j, speed_kmh;
   };
   // Two wagons of 90 t whose four buffers are just used up: v = sqrt(4 * 4 E / m).
-  for (const Category& c :
-       {Category{"side_buffers_a", 30e3, 8.314}, Category{"side_buffers_c", 70e3, 12.700}}) {
+  for (const Category& c : {Category{"side_buffers_a", 30e3, 8.314}, Category{"side_buffers_c", 70e3, 12.700}}) {
     ConnectionParams params = Connection(c.name);
     params.side_buffers.pretension_travel_m = 0.0;
     const SideBuffers buffers(params.side_buffers);

@@ -133,11 +133,7 @@ class FreeTrain {
  public:
   FreeTrain(const Consist& consist, const std::vector<double>& speeds, double dt, double prediction,
             SlackState slack = SlackState::kMiddle)
-      : vehicle_(Plain(), true),
-        forces_(consist, slack, prediction),
-        dt_(dt),
-        speed_(speeds),
-        states_(speeds.size()) {
+      : vehicle_(Plain(), true), forces_(consist, slack, prediction), dt_(dt), speed_(speeds), states_(speeds.size()) {
     for (size_t i = 0; i < speeds.size(); ++i) states_[i].v_mps = speeds[i];
     forces_.Begin(Displacements());
   }
@@ -200,8 +196,7 @@ TEST(InTrainForces, KeepMomentumAndTakeEnergy) {
     gears.draft_gear.friction = friction;
     FreeTrain train(Pairs(8, gears), RandomSpeeds(16), kDt, 0.5 * kDt);
     const double momentum = train.Momentum(), kinetic = train.Kinetic();
-    const double relative =
-        kinetic - 0.5 * momentum * momentum / (16.0 * LtdVehicle(OreWagon(), true).inertia_kg);
+    const double relative = kinetic - 0.5 * momentum * momentum / (16.0 * LtdVehicle(OreWagon(), true).inertia_kg);
     for (int i = 0; i < 20000; ++i) train.Step();
     EXPECT_NEAR(train.Momentum(), momentum, 1e-12 * momentum);  // rounding of 20000 steps
     const ConnectionEnergy energy = train.forces().Energy();
@@ -253,8 +248,7 @@ TEST(InTrainForces, ForcesOfTheIntervalsMiddleKeepTheEnergyOfADrawBar) {
   EXPECT_NEAR(DrawBarEnergy(0.5), 1.0, 1e-3);
   // With the force of the interval's start the damping ratio is -omega H / 4: energy grows by exp(omega^2 H t
   // / 2).
-  EXPECT_NEAR(DrawBarEnergy(0.0), std::exp(0.5 * omega_squared * 1e-3),
-              0.01 * std::exp(0.5 * omega_squared * 1e-3));
+  EXPECT_NEAR(DrawBarEnergy(0.0), std::exp(0.5 * omega_squared * 1e-3), 0.01 * std::exp(0.5 * omega_squared * 1e-3));
 }
 
 }  // namespace

@@ -37,8 +37,7 @@ TEST(CurvingResistance, AreaIsEightTenthsOfAPoundPerTonAndDegree) {
   // A curve of one degree: 100 ft of chord subtend it.
   const double radius_m = 50.0 * 0.3048 / std::sin(kPi / 360.0);
   EXPECT_NEAR(radius_m, 1746.40, 5e-3);
-  EXPECT_NEAR(CurvingResistance(By(CurvingResistanceLaw::kArea), 1.0 / radius_m), 0.8 * 4.44822 / 0.90718474,
-              1e-3);
+  EXPECT_NEAR(CurvingResistance(By(CurvingResistanceLaw::kArea), 1.0 / radius_m), 0.8 * 4.44822 / 0.90718474, 1e-3);
 }
 
 TEST(CurvingResistance, RoecklIsNotContinuousAt300m) {
@@ -60,8 +59,7 @@ TEST(CurvingResistance, TableIsLinearAndFallsWithTheRadiusBeyondItsEnd) {
 // With `cole` the work through a curve depends on its angle only: 6116 theta.
 TEST(CurvingResistance, WorkOfARightAngle) {
   const double radius_m = 500.0;
-  const double work =
-      CurvingResistance(By(CurvingResistanceLaw::kCole), 1.0 / radius_m) * radius_m * 0.5 * kPi;
+  const double work = CurvingResistance(By(CurvingResistanceLaw::kCole), 1.0 / radius_m) * radius_m * 0.5 * kPi;
   EXPECT_NEAR(work, 9606.99, 5e-3);  // J/t
 }
 
@@ -134,8 +132,7 @@ TEST(CurvingInTwoDimensions, SlowsTheWagonWithoutTorque) {
   EXPECT_GT(ride.Distance(), before);
   // The rail only slows the rotation: J a / r^2, of each wheelset, turned forwards by the train.
   const double a = -ride.loads.curving_resistance_n / inertia_kg;
-  for (const double creep_n : ride.output.creep_force_n)
-    EXPECT_NEAR(creep_n, 679.0 / (0.485 * 0.485) * a, 2.0);
+  for (const double creep_n : ride.output.creep_force_n) EXPECT_NEAR(creep_n, 679.0 / (0.485 * 0.485) * a, 2.0);
   EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
 }
 
@@ -158,12 +155,11 @@ TEST(CurvingInTwoDimensions, HoldsAStandingWagon) {
 TEST(CurvingLoads, TakeTheWorkOfEveryVehicleInATrain) {
   for (const char* model : {"ltd", "2d"}) {
     const Outcome outcome = Simulate(
-        "emergency",
-        {std::string("model=") + model, "commands=[]", "duration_s=20", "detail_vehicles=[]",
-         "train.consist[1].count=2", "train.consist[2].count=1", "train.consist[3].count=2",
-         "brake=single_vehicle", "initial_speed_kmh=36",
-         "track={name: curve, curves: [{from_m: 20, to_m: 50, radius_m: 300}, {from_m: 60, to_m: 65, "
-         "radius_m: -200}]}"});
+        "emergency", {std::string("model=") + model, "commands=[]", "duration_s=20", "detail_vehicles=[]",
+                      "train.consist[1].count=2", "train.consist[2].count=1", "train.consist[3].count=2",
+                      "brake=single_vehicle", "initial_speed_kmh=36",
+                      "track={name: curve, curves: [{from_m: 20, to_m: 50, radius_m: 300}, {from_m: 60, to_m: 65, "
+                      "radius_m: -200}]}"});
     double work_j = 0.0;
     for (const auto& [element, energy] : outcome.ledger.dissipated_j) {
       if (element == "curving_resistance") work_j = energy;

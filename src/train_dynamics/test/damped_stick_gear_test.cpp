@@ -43,8 +43,7 @@ TEST(DampedStickGears, ASlowCycleTakesItsClosedFormShareAtAnyPeriod) {
         (stick * a - f_loaded + kUnloading * p.preload_n) / (stick - kUnloading * p.spring_stiffness_n_per_m);
     const double f_turn = kUnloading * (p.preload_n + p.spring_stiffness_n_per_m * turn);
     const double in = kLoading * SpringEnergy(p, a);
-    const double back =
-        (f_loaded * f_loaded - f_turn * f_turn) / (2.0 * stick) + kUnloading * SpringEnergy(p, turn);
+    const double back = (f_loaded * f_loaded - f_turn * f_turn) / (2.0 * stick) + kUnloading * SpringEnergy(p, turn);
     for (const double rate : {1e-6, 1e-3, 1.0}) {
       std::vector<double> path = {kHalfSlack};
       MoveTo(path, ExtensionAt(a), 30000);
@@ -76,8 +75,8 @@ TEST(DampedStickGears, ReachTheForceAndEnergyOfTheirSheets) {
     const char* name;
     double travel_m, force_n, energy_j;
   };
-  for (const Sheet& sheet : {Sheet{"friction_gear", 0.083, 2.228e6, 95.1e3},
-                             Sheet{"mt2", 0.083, 2.20e6, 55e3}, Sheet{"tf880", 0.0744, 2.52e6, 61.7e3}}) {
+  for (const Sheet& sheet : {Sheet{"friction_gear", 0.083, 2.228e6, 95.1e3}, Sheet{"mt2", 0.083, 2.20e6, 55e3},
+                             Sheet{"tf880", 0.0744, 2.52e6, 61.7e3}}) {
     const DampedStickGears gears(Gear(sheet.name));
     std::vector<double> path = {kHalfSlack};
     MoveTo(path, ExtensionAt(sheet.travel_m), 50000);
@@ -94,8 +93,7 @@ TEST(DampedStickGears, AnImpactMeetsTheBalanceOfEnergyWhateverTheStickSpring) {
     double speed_kmh, peak_n, travel_m;
   };
   // Peaks of an independent program, from 2 * 3.2575 U_s(d) = m v^2 / 4.
-  for (const Case& c :
-       {Case{3.0, 884.7e3, 0.03145}, Case{5.0, 1470.8e3, 0.05394}, Case{7.0, 2057.8e3, 0.07646}}) {
+  for (const Case& c : {Case{3.0, 884.7e3, 0.03145}, Case{5.0, 1470.8e3, 0.05394}, Case{7.0, 2057.8e3, 0.07646}}) {
     for (const double stick : {2e8, 1e9}) {
       DraftGearParams p = Gear();
       p.gear_stick_stiffness_n_per_m = stick;
@@ -115,8 +113,7 @@ TEST(DampedStickGears, PartAsFastAsTheStoredEnergyAllows) {
   const DampedStickGears gears(p);
   const Impact impact = Collide(gears, kMass, kSpeed, -kHalfSlack, 1e-5);
   const double q = -kHalfSlack - impact.travel_m;
-  const StickState<double> turned = {
-      q, -kLoading * (p.preload_n + p.spring_stiffness_n_per_m * 0.5 * impact.travel_m)};
+  const StickState<double> turned = {q, -kLoading * (p.preload_n + p.spring_stiffness_n_per_m * 0.5 * impact.travel_m)};
   EXPECT_NEAR(0.25 * kMass * impact.speed_mps * impact.speed_mps, StoredEnergy(gears, q, turned),
               0.01 * StoredEnergy(gears, q, turned));
 }
@@ -125,8 +122,7 @@ TEST(DampedStickGears, HoldUnderVibration) {
   const DampedStickGears gears(Gear());
   const double q = ExtensionAt(0.010);
   StickState<double> memory = gears.AtRest(kHalfSlack);
-  for (int i = 0; i <= 10000; ++i)
-    ConnectionForce(gears, kHalfSlack + (q - kHalfSlack) * i / 10000, 0.0, memory);
+  for (int i = 0; i <= 10000; ++i) ConnectionForce(gears, kHalfSlack + (q - kHalfSlack) * i / 10000, 0.0, memory);
   const double held_n = memory.force;
   EXPECT_NEAR(held_n, 325.8e3, 0.1e3);
   constexpr double kAmplitude = 1e-6;  // of one gear

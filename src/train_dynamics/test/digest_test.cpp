@@ -44,8 +44,7 @@ TEST(Digest, EveryBitChangesAboutHalfOfTheResult) {
   const std::uint64_t plain = DigestOf({1.0});
   int changed = 0;
   for (int bit = 0; bit < 64; ++bit) {
-    const int one =
-        __builtin_popcountll(plain ^ DigestOf({FromBits(ToBits(1.0) ^ (std::uint64_t{1} << bit))}));
+    const int one = __builtin_popcountll(plain ^ DigestOf({FromBits(ToBits(1.0) ^ (std::uint64_t{1} << bit))}));
     EXPECT_GE(one, 16) << bit;
     EXPECT_LE(one, 48) << bit;
     changed += one;

@@ -25,8 +25,7 @@ TEST(Dip, SlopeIsTheDerivativeAndBothVanishOutside) {
   const DipParams dip{-3.0, 0.03, 7.0};
   constexpr double kStep = 1e-4;
   for (double x = -4.03; x < 5.0; x += 0.05) {
-    const double difference =
-        (DipHeight(dip, x + kStep).height - DipHeight(dip, x - kStep).height) / (2.0 * kStep);
+    const double difference = (DipHeight(dip, x + kStep).height - DipHeight(dip, x - kStep).height) / (2.0 * kStep);
     // h^2/6 times the third derivative, 0.011 1/m^2; across an end h/4 times the jump of the second, 0.012
     // 1/m.
     EXPECT_NEAR(DipHeight(dip, x).slope, difference, 3e-7) << x;

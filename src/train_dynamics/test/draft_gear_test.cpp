@@ -32,9 +32,7 @@ std::vector<double> Extensions() {
 
 const std::vector<double> kRates = {0.0, 1e-4, 0.01, 0.077, 0.3, 2.0};  // [m/s]
 
-double Smooth(const DraftGearParams& p, double q, double rate) {
-  return SmoothGearForce(DraftGear(p), q, rate).force;
-}
+double Smooth(const DraftGearParams& p, double q, double rate) { return SmoothGearForce(DraftGear(p), q, rate).force; }
 
 TEST(DraftGear, SmoothForceIsEq4) {
   const DraftGearParams& p = PaperGear();
@@ -72,8 +70,7 @@ TEST(DraftGear, IsOdd) {
     const double q = 0.12 * std::sin(9.0 * t), rate = (q - q_before) / 1e-3;
     q_before = q;
     EXPECT_EQ(SmoothGearForce(gear, q, rate).force, -SmoothGearForce(gear, -q, -rate).force);
-    EXPECT_EQ(StickSpringGearForce(gear, q, rate, pulled).force,
-              -StickSpringGearForce(gear, -q, -rate, pushed).force);
+    EXPECT_EQ(StickSpringGearForce(gear, q, rate, pulled).force, -StickSpringGearForce(gear, -q, -rate, pushed).force);
     EXPECT_EQ(GearEnergy(gear.params, q), GearEnergy(gear.params, -q));
   }
 }
@@ -142,9 +139,8 @@ double CycleWork(const DraftGearParams& p, double middle, double amplitude, doub
     const double phase = 2.0 * kPi * i / kSteps;
     const double q = middle + amplitude * std::sin(phase);
     const double rate = amplitude * 2.0 * kPi * frequency * std::cos(phase);
-    const double force = p.friction == DraftGearFriction::kSmooth
-                             ? SmoothGearForce(gear, q, rate).force
-                             : StickSpringGearForce(gear, q, rate, stick).force;
+    const double force = p.friction == DraftGearFriction::kSmooth ? SmoothGearForce(gear, q, rate).force
+                                                                  : StickSpringGearForce(gear, q, rate, stick).force;
     if (i > 0) work += 0.5 * (force + force_before) * (q - q_before);
     q_before = q;
     force_before = force;
@@ -206,8 +202,8 @@ TEST(DraftGear, StickSpringStaysBetweenItsBranchesAndSticks) {
   // Standing still, it holds its force: a smooth gear would fall back to the spring.
   EXPECT_EQ(StickSpringGearForce(gear, 0.08, 0.0, stick).force, loaded);
   // Pulled back by a hair it unloads along the stick stiffness, to the rounding of q - q_before.
-  EXPECT_NEAR(StickSpringGearForce(gear, 0.08 - 1e-5, -1e-3, stick).force,
-              loaded - 1e-5 * p.stick_stiffness_n_per_m, 1e-6);
+  EXPECT_NEAR(StickSpringGearForce(gear, 0.08 - 1e-5, -1e-3, stick).force, loaded - 1e-5 * p.stick_stiffness_n_per_m,
+              1e-6);
   // Pulled back further it is on the unloading branch.
   const double tan_phi = std::tan(22.0 * kPi / 180.0);
   const double mu = 0.05 + (0.33 - 0.05) * std::exp(-0.5 * 1e-3 / 0.278);

@@ -28,8 +28,7 @@ DriverCommand Timed(double time_s, DriverCommand command) {
 }
 
 TEST(RouteSight, ShowsTheLineFromTheFrontOn) {
-  const config::LoadedScenario loaded =
-      config::LoadScenario(ScenarioFile("emergency"), {"train.consist[0].count=2"});
+  const config::LoadedScenario loaded = config::LoadScenario(ScenarioFile("emergency"), {"train.consist[0].count=2"});
   TrainParams two = loaded.params.train;
   two.consist.resize(1);
   two.consist[0].count = 2;

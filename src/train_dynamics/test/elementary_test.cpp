@@ -51,8 +51,7 @@ constexpr double kReferenceError = 0.0005;
 static_assert(LDBL_MANT_DIG >= 64, "the reference needs extended precision");
 
 template <class Function, class Reference>
-void ExpectErrorBelow(double bound_ulp, Function function, Reference reference,
-                      const std::vector<double>& arguments) {
+void ExpectErrorBelow(double bound_ulp, Function function, Reference reference, const std::vector<double>& arguments) {
   for (const double x : arguments) {
     const long double exact = reference(static_cast<long double>(x));
     const double error_ulp = static_cast<double>(std::abs(function(x) - exact)) / Ulp(exact);
@@ -102,8 +101,7 @@ TEST(Atan, ErrorIsBelowTwoUlp) {
 
 TEST(Atan, LimitsAreExact) {
   EXPECT_EQ(Atan(1.0), static_cast<double>(kPi / 4.0L));
-  for (const double x : {1e17, 1e300, kLargest, kInfinity})
-    EXPECT_EQ(Atan(x), static_cast<double>(kPi / 2.0L)) << x;
+  for (const double x : {1e17, 1e300, kLargest, kInfinity}) EXPECT_EQ(Atan(x), static_cast<double>(kPi / 2.0L)) << x;
   for (const double x : {0.0, 5e-324, 1e-310, 1e-100, 1e-20}) EXPECT_EQ(Atan(x), x);
 }
 

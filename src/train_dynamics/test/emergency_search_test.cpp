@@ -36,8 +36,7 @@ std::vector<double> Lengths(const Consist& consist) {
 // Every shipped train with a pneumatic brake, and the paper's train with each of the shipped brakes.
 TEST(EmergencySearch, FindsNoneInAnyShippedTrain) {
   std::vector<config::LoadedScenario> trains;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios")) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios")) {
     if (entry.path().extension() != ".yaml") continue;
     config::LoadedScenario loaded = config::LoadScenario(entry.path().string(), {});
     if (loaded.params.brake && loaded.params.brake->kind == BrakeSystemKind::kPneumatic)
@@ -55,10 +54,8 @@ TEST(EmergencySearch, FindsNoneInAnyShippedTrain) {
       search.cells_per_vehicle = cells;
       search.mean_pause_s = cells == 4 ? 5.0 : 10.0;
       search.commands = 5;
-      EXPECT_EQ(Told(FindUndesiredEmergencies(train.params.brake->pneumatic, Lengths(train.consist), search)),
-                "")
-          << train.params.name << ", " << train.params.brake->name << ", cells " << cells << ", seed "
-          << search.seed;
+      EXPECT_EQ(Told(FindUndesiredEmergencies(train.params.brake->pneumatic, Lengths(train.consist), search)), "")
+          << train.params.name << ", " << train.params.brake->name << ", cells " << cells << ", seed " << search.seed;
     }
   }
 }
@@ -67,8 +64,7 @@ TEST(EmergencySearch, FindsNoneInAnyShippedTrain) {
 TEST(EmergencySearch, FindsThoseOfWidePassages) {
   PneumaticBrakeParams params;
   params.valves[0].direct.quick_service_volume_l = 3.0;
-  params.valves[0].direct.quick_service_kpa =
-      200.0;  // 600 J from the 12 l of a vehicle's pipe: a fall by 50 kPa
+  params.valves[0].direct.quick_service_kpa = 200.0;  // 600 J from the 12 l of a vehicle's pipe: a fall by 50 kPa
   params.valves[0].direct.quick_service_opening_mm = 6.0;
   EmergencySearch search;
   search.trials = 5;

@@ -20,20 +20,17 @@ bool Survives(const std::string& model, double dt_s, int steps, const std::strin
   const double interval_s = dt_s * steps;
   const auto number = [](double value) { return ShortestDecimal(value); };
   try {
-    const Outcome outcome =
-        Simulate("emergency",
-                 {"model=" + model, "detail_vehicles=[]", "brake=single_vehicle",
-                  "commands=[{time_s: 0, kind: emergency}]",
-                  "train={name: t, connection: {name: b, kind: draw_bar, draw_bar: " + draw_bar +
-                      "}, consist: [{vehicle: ore_wagon, count: 40}]}",
-                  "dt_s=" + number(dt_s), "exchange_interval_s=" + number(interval_s),
-                  "record_interval_s=" + number(interval_s), "ledger_interval_s=" + number(10.0 * interval_s),
-                  "duration_s=" + number(400.0 * interval_s)});
+    const Outcome outcome = Simulate(
+        "emergency",
+        {"model=" + model, "detail_vehicles=[]", "brake=single_vehicle", "commands=[{time_s: 0, kind: emergency}]",
+         "train={name: t, connection: {name: b, kind: draw_bar, draw_bar: " + draw_bar +
+             "}, consist: [{vehicle: ore_wagon, count: 40}]}",
+         "dt_s=" + number(dt_s), "exchange_interval_s=" + number(interval_s), "record_interval_s=" + number(interval_s),
+         "ledger_interval_s=" + number(10.0 * interval_s), "duration_s=" + number(400.0 * interval_s)});
     constexpr double kAbsurd = 1e8;  // [N]; the brakes make some 1e5 N
-    return std::all_of(outcome.coupler_extremes.begin(), outcome.coupler_extremes.end(),
-                       [](const ForceExtremes& force) {
-                         return force.tension_n < kAbsurd && -force.compression_n < kAbsurd;
-                       });
+    return std::all_of(
+        outcome.coupler_extremes.begin(), outcome.coupler_extremes.end(),
+        [](const ForceExtremes& force) { return force.tension_n < kAbsurd && -force.compression_n < kAbsurd; });
   } catch (const SimulationFault&) {
     return false;
   }

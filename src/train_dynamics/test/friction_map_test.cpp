@@ -45,8 +45,7 @@ TEST(RailPatch, RampsGoLinearlyAroundItsEnds) {
     const double up = std::clamp((x - 98.0) / 4.0, 0.0, 1.0), down = std::clamp((x - 198.0) / 4.0, 0.0, 1.0);
     const std::array<double, 5> found = AdhesionNumbers(track.SurfaceAt(x, kOwn));
     for (int i = 0; i < 5; ++i) {
-      EXPECT_NEAR(found[i], own[i] + (up - down) * (leaves[i] - own[i]), 1e-13)
-          << x;  // rounding of (x - 98) / 4
+      EXPECT_NEAR(found[i], own[i] + (up - down) * (leaves[i] - own[i]), 1e-13) << x;  // rounding of (x - 98) / 4
     }
   }
   // The middle of a ramp is the end of the patch.
@@ -95,15 +94,12 @@ TEST(RailPatch, RampsMustFit) {
   EXPECT_EQ(errors({Leaves(0.0, 10.0, 4.0), Leaves(13.5, 20.0, 4.0)})
                 .find("friction_patches[1].ramp_length_m must leave room to the next change of the surface"),
             0u);
-  EXPECT_NE(
-      errors({Leaves(0.0, 10.0, 4.0), Leaves(13.5, 20.0, 4.0)}).find("at 10 m (4 m long) and 13.5 m (4 m)"),
-      std::string::npos);
+  EXPECT_NE(errors({Leaves(0.0, 10.0, 4.0), Leaves(13.5, 20.0, 4.0)}).find("at 10 m (4 m long) and 13.5 m (4 m)"),
+            std::string::npos);
   EXPECT_EQ(errors({Leaves(0.0, 3.0, 4.0)}).find("friction_patches[0].ramp_length_m"), 0u);
   // A sharp neighbour has no ramp, but the other's ramp must stay clear of it.
-  EXPECT_EQ(errors({{0.0, 10.0, 0.1}, Leaves(10.4, 20.0, 1.0)}).find("friction_patches[1].ramp_length_m"),
-            0u);
-  EXPECT_EQ(errors({Leaves(0.0, 10.0, 1.0), {10.4, 20.0, 0.1}}).find("friction_patches[0].ramp_length_m"),
-            0u);
+  EXPECT_EQ(errors({{0.0, 10.0, 0.1}, Leaves(10.4, 20.0, 1.0)}).find("friction_patches[1].ramp_length_m"), 0u);
+  EXPECT_EQ(errors({Leaves(0.0, 10.0, 1.0), {10.4, 20.0, 0.1}}).find("friction_patches[0].ramp_length_m"), 0u);
 }
 
 TEST(RailPatch, NeedsOneOfFrictionAndAdhesion) {
@@ -148,8 +144,7 @@ TEST(RailPatch, MixedPacksGiveTheBitsOfSingleWagons) {
     pack_loads.cylinder_pressure_pa = Pack(4e5);
     WagonOutput<Pack>* const no_output = nullptr;
     StepWagon(wagon, track, pack_loads, 1e-3, packed, no_output);
-    mixed_steps +=
-        RailSurfaceUnder(track, packed.origin_m + packed.position.x[kWheelset1], kOwn).adhesion == nullptr;
+    mixed_steps += RailSurfaceUnder(track, packed.origin_m + packed.position.x[kWheelset1], kOwn).adhesion == nullptr;
     for (int i = 0; i < kNumbers; ++i) {
       for (int lane = 0; lane < kCount; ++lane) {
         ASSERT_EQ(lane_of(scalar[lane], i), pack_number(i, lane)) << "number " << i << ", step " << step;

@@ -52,7 +52,7 @@ TEST(FrictionWedge, ForceRatioSolvesEq6) {
       for (const double mu : {0.0, 0.05, 0.2, 0.35}) {
         // Rounding of a well-conditioned 3 x 3 solution.
         EXPECT_NEAR(wedge.ForceRatio(mu), ForceRatioOfEq6(p, mu, -1.0),
-                    1e-14);  // bolster comes down: loading
+                    1e-14);                                                       // bolster comes down: loading
         EXPECT_NEAR(wedge.ForceRatio(-mu), ForceRatioOfEq6(p, mu, +1.0), 1e-14);  // rises: unloading
       }
     }

@@ -51,8 +51,7 @@ TEST(Hertz, TheDeformedSurfacesTouchAllOverTheEllipse) {
   const HertzParams& steel = OreWagon().wheel_rail.hertz;
   const double wheel = 0.5 / OreWagon().wheelset.wheel_radius_m;
   const double lateral = 0.5 * (1.0 / steel.wheel_lateral_radius_m + 1.0 / steel.rail_lateral_radius_m);
-  for (const Curvatures& c :
-       {Curvatures{wheel, lateral}, {1.0, 1.1}, {1.0, 1.00001}, {5.0, 1.0}, {1.0, 40.0}}) {
+  for (const Curvatures& c : {Curvatures{wheel, lateral}, {1.0, 1.1}, {1.0, 1.00001}, {5.0, 1.0}, {1.0, 40.0}}) {
     const ContactEllipse ellipse = EllipseOf(c);
     for (const double load : {1e3, kStaticWheelLoad, 1e6}) {
       const double a = ellipse.a_per_cbrt_n * std::cbrt(load), b = ellipse.b_per_cbrt_n * std::cbrt(load);

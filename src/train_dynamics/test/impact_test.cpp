@@ -16,8 +16,8 @@ struct Impact {
   double peak_n = 0.0, restitution = 0.0, lost_j = 0.0;
 };
 
-// Two equal masses with two equal friction gears in series between them, stepped by 1 us; the law as written in the data
-// sheets' words: a stick spring between a loading and an unloading branch.
+// Two equal masses with two equal friction gears in series between them, stepped by 1 us; the law as written in the
+// data sheets' words: a stick spring between a loading and an unloading branch.
 Impact Independent(double mass_kg, double speed_mps) {
   const double t = std::tan(22.0 * std::acos(-1.0) / 180.0), mu = 0.28;
   const double up = t / (t - mu), down = t / (t + mu);
@@ -92,8 +92,8 @@ TEST(Impact, PeaksBelowTheStopFollowFromTheEnergy) {
 
 // Two wagons of 129.7 t, the rear one at v; the largest compression [N].
 double Peak(double speed_kmh, std::vector<std::string> overrides) {
-  overrides.insert(overrides.end(), {"model=ltd-no-inertia",
-                                     "train.consist[1].initial_speed_kmh=" + std::to_string(speed_kmh)});
+  overrides.insert(overrides.end(),
+                   {"model=ltd-no-inertia", "train.consist[1].initial_speed_kmh=" + std::to_string(speed_kmh)});
   for (const char* vehicle : {"train.consist[0].vehicle", "train.consist[1].vehicle"}) {
     overrides.push_back(std::string(vehicle) + ".carbody.mass_kg=117186");
     for (const char* term : {"constant_n_per_kn", "linear_n_per_kn_kmh", "quadratic_n_per_kn_kmh2"}) {
@@ -110,8 +110,8 @@ double Peak(double speed_kmh, std::vector<std::string> overrides) {
 }
 
 TEST(Impact, GearsAreUsedUpAtTheSpeedOfTheirEnergy) {
-  // v = sqrt(8 E / m), E per gear. [O] TF-880, 61.72 kJ: 7.02 km/h; a gear of 36 000 ft-lb (48.81 kJ): 6.25 km/h. There the
-  // gear is at the end of its travel, and a tenth faster it is solid.
+  // v = sqrt(8 E / m), E per gear. [O] TF-880, 61.72 kJ: 7.02 km/h; a gear of 36 000 ft-lb (48.81 kJ): 6.25 km/h. There
+  // the gear is at the end of its travel, and a tenth faster it is solid.
   const double tf880_n = 2.52e6;
   EXPECT_NEAR(Peak(7.02, {"train.connection=tf880"}), tf880_n, 0.015 * tf880_n);
   EXPECT_GT(Peak(1.1 * 7.02, {"train.connection=tf880"}), 1.1 * tf880_n);
@@ -121,8 +121,7 @@ TEST(Impact, GearsAreUsedUpAtTheSpeedOfTheirEnergy) {
   const double d = 0.083, preload = 20e3;
   const double k = 2.0 * (48.81e3 / loading - preload * (d - 0.5e-3)) / (d * d);
   const double end_n = loading * (preload + k * d);
-  const std::vector<std::string> gear = {"train.connection.draft_gear.spring_stiffness_n_per_m=" +
-                                         std::to_string(k)};
+  const std::vector<std::string> gear = {"train.connection.draft_gear.spring_stiffness_n_per_m=" + std::to_string(k)};
   EXPECT_NEAR(Peak(6.25, gear), end_n, 0.015 * end_n);
   EXPECT_GT(Peak(1.1 * 6.25, gear), 1.1 * end_n);
 }

@@ -34,8 +34,8 @@ std::vector<double> ArgumentsOfEveryKind() {
   for (double& x : numbers) x = FromBits(random());
   for (const double x : Uniform(-50.0, 50.0, 100000)) numbers.push_back(x);
   for (const double x : Uniform(-2.0, 2.0, 100000)) numbers.push_back(x);
-  for (const double x : {0.0, 5e-324, 1e-310, kSmallestNormal, 0.41421356237309503, 1.0, 2.414213562373095,
-                         8.0, 22.0, 708.0, 709.78, 710.0, 1e300, kLargest, kInfinity, kNaN}) {
+  for (const double x : {0.0, 5e-324, 1e-310, kSmallestNormal, 0.41421356237309503, 1.0, 2.414213562373095, 8.0, 22.0,
+                         708.0, 709.78, 710.0, 1e300, kLargest, kInfinity, kNaN}) {
     for (const double y : {std::nextafter(x, -kInfinity), x, std::nextafter(x, kInfinity)}) {
       numbers.push_back(y);
       numbers.push_back(-y);
@@ -63,8 +63,8 @@ void ExpectLanesEqualScalar(const char* name, Operation operation) {
     for (std::size_t lane = 0; lane < N; ++lane) {
       const double expected = operation(x[i + lane], y[i + lane]);
       ASSERT_TRUE(SameBits(result[lane], expected))
-          << name << " of " << x[i + lane] << " and " << y[i + lane] << " in lane " << lane << " of " << N
-          << ": " << result[lane] << " instead of " << expected;
+          << name << " of " << x[i + lane] << " and " << y[i + lane] << " in lane " << lane << " of " << N << ": "
+          << result[lane] << " instead of " << expected;
     }
   }
 }

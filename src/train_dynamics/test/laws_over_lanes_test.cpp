@@ -60,8 +60,7 @@ TEST(LawsOverLanes, WagonStepsGiveTheBitsOfDouble) {
       loads.front_coupler_n = 1e4 * lane;
       loads.cylinder_pressure_pa = Pressure(step);
       StepWagon(wagon, track, loads, 1e-3, scalar[lane], &scalar_output[lane]);
-      if (scalar[lane].velocity.pitch[kWheelset1] == 0.0 && scalar[lane].velocity.x[kCarbody] > 1.0)
-        ++locked_steps;
+      if (scalar[lane].velocity.pitch[kWheelset1] == 0.0 && scalar[lane].velocity.x[kCarbody] > 1.0) ++locked_steps;
     }
     VehicleLoads<Pack> loads;
     loads.front_coupler_n = Gather([](int lane) { return 1e4 * lane; });
@@ -72,12 +71,9 @@ TEST(LawsOverLanes, WagonStepsGiveTheBitsOfDouble) {
       ASSERT_EQ(scalar_output[lane].creep_force_n[0], packed_output.creep_force_n[0][lane]) << step;
       ASSERT_EQ(scalar_output[lane].wedge_friction_n[3], packed_output.wedge_friction_n[3][lane]) << step;
       for (int b = 0; b < kBodies; ++b) {
-        ASSERT_EQ(scalar[lane].position.x[b], packed.position.x[b][lane])
-            << kBodyNames[b] << ", step " << step;
-        ASSERT_EQ(scalar[lane].velocity.z[b], packed.velocity.z[b][lane])
-            << kBodyNames[b] << ", step " << step;
-        ASSERT_EQ(scalar[lane].velocity.pitch[b], packed.velocity.pitch[b][lane])
-            << kBodyNames[b] << ", step " << step;
+        ASSERT_EQ(scalar[lane].position.x[b], packed.position.x[b][lane]) << kBodyNames[b] << ", step " << step;
+        ASSERT_EQ(scalar[lane].velocity.z[b], packed.velocity.z[b][lane]) << kBodyNames[b] << ", step " << step;
+        ASSERT_EQ(scalar[lane].velocity.pitch[b], packed.velocity.pitch[b][lane]) << kBodyNames[b] << ", step " << step;
       }
       for (int i = 0; i < kDissipations; ++i) {
         ASSERT_EQ(scalar[lane].work.dissipated[i], packed.work.dissipated[i][lane]) << kDissipationNames[i];
@@ -121,8 +117,7 @@ TEST(LawsOverLanes, DraftGearsGiveTheBitsOfDouble) {
     for (int lane = 0; lane < kCount; ++lane) {
       EXPECT_EQ(SmoothGearForce(gear, q, rate(lane)).force, packed.force[lane]) << q;
       scalar_state[lane] = {0.001, 0.0};
-      EXPECT_EQ(StickSpringGearForce(gear, q, rate(lane), scalar_state[lane]).force, packed_stick.force[lane])
-          << q;
+      EXPECT_EQ(StickSpringGearForce(gear, q, rate(lane), scalar_state[lane]).force, packed_stick.force[lane]) << q;
     }
   }
 }

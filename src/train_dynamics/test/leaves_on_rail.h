@@ -20,8 +20,7 @@ inline const AdhesionParams kOwn = Surface(0.4, 0.8, 0.1, 0.9, 0.5);
 inline const AdhesionParams kLeaves = Surface(0.05, 0.4, 0.2, 0.3, 0.1);
 
 inline std::array<double, 5> AdhesionNumbers(const AdhesionParams& p) {
-  return {p.friction_coefficient, p.friction_ratio, p.friction_decay_s_per_m, p.adhesion_reduction,
-          p.slip_reduction};
+  return {p.friction_coefficient, p.friction_ratio, p.friction_decay_s_per_m, p.adhesion_reduction, p.slip_reduction};
 }
 
 inline FrictionPatchParams Leaves(double from_m, double to_m, double ramp_m) {

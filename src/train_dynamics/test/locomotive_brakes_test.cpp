@@ -71,8 +71,8 @@ struct Machine {
   std::vector<double> cylinder_pa;
 };
 
-// The valve's cylinder stays empty, though the limiting valve would feed it; what the pipe falls further acts, 2.5 times
-// that less at most the 5.2 kPa of its threshold; the train does not notice; no air is lost.
+// The valve's cylinder stays empty, though the limiting valve would feed it; what the pipe falls further acts, 2.5
+// times that less at most the 5.2 kPa of its threshold; the train does not notice; no air is lost.
 TEST(BailOff, LetsTheLocomotiveGoAndNothingElse) {
   Machine machine(ControlValveKind::kDirectRelease);
   const double mass = machine.brake.AirMass();
@@ -95,8 +95,8 @@ TEST(BailOff, LetsTheLocomotiveGoAndNothingElse) {
   machine.brake.Command({160.0, BrakeCommandKind::kEmergency});
   machine.Run(220.0);
   EXPECT_GT(machine.cylinder_pa[0], 430e3);  // an emergency acts again
-  EXPECT_NEAR((machine.brake.AirMass() + machine.brake.ReleasedMass() - machine.brake.SuppliedMass()) / mass,
-              1.0, 1e-9);
+  EXPECT_NEAR((machine.brake.AirMass() + machine.brake.ReleasedMass() - machine.brake.SuppliedMass()) / mass, 1.0,
+              1e-9);
 }
 
 TEST(BailOff, OfADistributorTakesItsReleaseTime) {
@@ -120,8 +120,7 @@ TEST(BailOff, OfEcpLastsWhileItIsHeld) {
   const double applied_pa = machine.cylinder_pa[0];
   EXPECT_NEAR(applied_pa, 430e3, 2e3);
   machine.Run(45.0);
-  EXPECT_NEAR(machine.cylinder_pa[0] / (applied_pa * std::exp(-5.0 / 15.0 * std::log(0.95 * 430.0 / 40.0))),
-              1.0, 0.01);
+  EXPECT_NEAR(machine.cylinder_pa[0] / (applied_pa * std::exp(-5.0 / 15.0 * std::log(0.95 * 430.0 / 40.0))), 1.0, 0.01);
   machine.Run(80.0);
   EXPECT_NEAR(machine.cylinder_pa[0], machine.cylinder_pa[1], 5e3);
 }
@@ -191,8 +190,7 @@ TEST(LocomotiveBrakes, GoOnFromACheckpoint) {
   EXPECT_EQ(resumed.cylinder_pa.back(), whole.cylinder_pa.back());
 }
 
-void ExpectRefused(const std::string& commands, const std::string& words,
-                   const std::string& brake = "ab_head_end") {
+void ExpectRefused(const std::string& commands, const std::string& words, const std::string& brake = "ab_head_end") {
   std::string refusal;
   try {
     config::LoadScenario(ScenarioFile("drive_and_stop"), {"brake=" + brake, "commands=[" + commands + "]"});
@@ -206,11 +204,9 @@ TEST(LocomotiveBrakes, AreNotCommandedWrongly) {
   ExpectRefused("{time_s: 1, kind: independent_brake}", "pressure_kpa is missing");
   ExpectRefused("{time_s: 1, kind: independent_brake, pressure_kpa: 600}",
                 "must be at most brake.locomotive_brake.maximum_independent_kpa, 450, got 600");
-  ExpectRefused("{time_s: 1, kind: independent_brake, pressure_kpa: 100, vehicles: [-1]}",
-                "must be a locomotive");
+  ExpectRefused("{time_s: 1, kind: independent_brake, pressure_kpa: 100, vehicles: [-1]}", "must be a locomotive");
   ExpectRefused("{time_s: 1, kind: bail_off, pressure_kpa: 100}", "pressure_kpa is not");
-  ExpectRefused("{time_s: 1, kind: bail_off}", "must not be bail_off with a brake of kind empirical",
-                "calibrated");
+  ExpectRefused("{time_s: 1, kind: bail_off}", "must not be bail_off with a brake of kind empirical", "calibrated");
 }
 
 }  // namespace

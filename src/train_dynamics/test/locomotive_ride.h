@@ -30,10 +30,9 @@ inline LtdVehicle Train(bool with_resistance) {
 }
 
 /// Drives until `done(time, state)`. @return the time
-inline double Drive(const LtdVehicle& train, const TractionParams& p, int locomotives,
-                    const NotchCommand& command, double grade_percent, double dt,
-                    const std::function<bool(double, const LtdState<double>&)>& done, LtdState<double>& s,
-                    DriveState& drive) {
+inline double Drive(const LtdVehicle& train, const TractionParams& p, int locomotives, const NotchCommand& command,
+                    double grade_percent, double dt, const std::function<bool(double, const LtdState<double>&)>& done,
+                    LtdState<double>& s, DriveState& drive) {
   TrackParams slope;
   slope.grades = {{0.0, grade_percent}};
   const Track track(slope);

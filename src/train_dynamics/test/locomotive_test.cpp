@@ -16,8 +16,7 @@ TEST(Traction, AcceleratesAsTheClosedFormSays) {
   // M v1 / F + M (v2^2 - v1^2) / 2P and M v1^2 / 2F + M (v2^3 - v1^3) / 3P, corner v1 = P / F = 3.75 m/s.
   const double f = 800e3, power = 3.0e6, v1 = power / f, v2 = 20.0;
   const double time_s = kMass * v1 / f + kMass * (v2 * v2 - v1 * v1) / (2.0 * power);
-  const double way_m =
-      kMass * v1 * v1 / (2.0 * f) + kMass * (std::pow(v2, 3) - std::pow(v1, 3)) / (3.0 * power);
+  const double way_m = kMass * v1 * v1 / (2.0 * f) + kMass * (std::pow(v2, 3) - std::pow(v1, 3)) / (3.0 * power);
   EXPECT_NEAR(time_s, 345.052, 5e-4);
   EXPECT_NEAR(way_m, 4459.093, 5e-4);
   constexpr double kDt = 1e-3;

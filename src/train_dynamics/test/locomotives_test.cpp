@@ -75,12 +75,12 @@ TEST(Locomotives, PullATrainWithTheBooksClosed) {
   train.master.Start();
   train.Command({8, 0});
   train.RunUntil(60.0);
-  // The same as one mass on a point, by an integration of its own: efforts of 40 kN/s up to adhesion, 0.36 of 188.2 t, or
-  // power.
+  // The same as one mass on a point, by an integration of its own: efforts of 40 kN/s up to adhesion, 0.36 of 188.2 t,
+  // or power.
   double inertia_kg = 0.0, speed_mps = 0.0, effort_n = 0.0;
   for (int i = 0; i < train.loaded.consist.vehicles(); ++i) {
-    inertia_kg += train.loaded.consist.vehicle(i).TotalMass() +
-                  EquivalentRotationalMass(train.loaded.consist.vehicle(i));
+    inertia_kg +=
+        train.loaded.consist.vehicle(i).TotalMass() + EquivalentRotationalMass(train.loaded.consist.vehicle(i));
   }
   for (int ms = 0; ms < 60000; ++ms) {
     const double k = 3.6 * speed_mps;
@@ -110,20 +110,20 @@ TEST(Locomotives, PullATrainWithTheBooksClosed) {
 
 TEST(Locomotives, TheLedgerClosesWithEveryTermOfEq1InBothModels) {
   for (const char* model : {"2d", "ltd"}) {
-    const Outcome outcome = Simulate(
-        "emergency", {std::string("model=") + model,
-                      "train={name: all, connection: friction_gear, consist: [{vehicle: c44ac}, {vehicle: "
-                      "ore_wagon_loaded, count: "
-                      "4}, {vehicle: c44ac_trailing}]}",
-                      "track={name: hill, grades: [{from_m: -1000, grade_percent: 0.5}, {from_m: 80, "
-                      "grade_percent: -1}], curves: "
-                      "[{from_m: 20, to_m: 150, radius_m: 400}, {from_m: 150, to_m: 300, radius_m: -600}]}",
-                      "brake=single_vehicle",
-                      "commands=[{time_s: 0, kind: throttle, notch: 8}, {time_s: 8, kind: dynamic_brake, "
-                      "notch: 8}, {time_s: 20, "
-                      "kind: apply, reduction_kpa: 80}]",
-                      "initial_speed_kmh=40", "initial_slack=bunched", "duration_s=32",
-                      "record_interval_s=0.5", "detail_vehicles=[]"});
+    const Outcome outcome =
+        Simulate("emergency", {std::string("model=") + model,
+                               "train={name: all, connection: friction_gear, consist: [{vehicle: c44ac}, {vehicle: "
+                               "ore_wagon_loaded, count: "
+                               "4}, {vehicle: c44ac_trailing}]}",
+                               "track={name: hill, grades: [{from_m: -1000, grade_percent: 0.5}, {from_m: 80, "
+                               "grade_percent: -1}], curves: "
+                               "[{from_m: 20, to_m: 150, radius_m: 400}, {from_m: 150, to_m: 300, radius_m: -600}]}",
+                               "brake=single_vehicle",
+                               "commands=[{time_s: 0, kind: throttle, notch: 8}, {time_s: 8, kind: dynamic_brake, "
+                               "notch: 8}, {time_s: 20, "
+                               "kind: apply, reduction_kpa: 80}]",
+                               "initial_speed_kmh=40", "initial_slack=bunched", "duration_s=32",
+                               "record_interval_s=0.5", "detail_vehicles=[]"});
     ExpectLedgerCloses(outcome, model);
     EXPECT_GT(outcome.ledger.traction_work_j, 1e6) << model;
     EXPECT_NE(outcome.ledger.gravity_work_j, 0.0) << model;
@@ -187,8 +187,7 @@ TEST(Locomotives, GoOnFromACheckpointToTheSameBits) {
 }
 
 TEST(Locomotives, ObeyCommandsWithTheDelayOfTheirGroup) {
-  const std::vector<std::string> more = {"duration_s=8", "initial_speed_kmh=10",
-                                         "train.consist[2].command_delay_s=1.5",
+  const std::vector<std::string> more = {"duration_s=8", "initial_speed_kmh=10", "train.consist[2].command_delay_s=1.5",
                                          "commands=[{time_s: 1, kind: throttle, notch: 8}, "
                                          "{time_s: 4, kind: throttle, notch: 0, vehicles: [1]}]"};
   PulledTrain train(more);
@@ -232,9 +231,8 @@ TEST(LocomotiveCommands, ThatTheTrainCannotObeyAreRefused) {
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].key, "commands[0].kind");
   without.consist = {train.consist[1]};
-  EXPECT_EQ(
-      JudgeLocomotiveCommand({0.0, LocomotiveCommandKind::kThrottle, 4.0, {}}, "commands[0]", without).size(),
-      1u);
+  EXPECT_EQ(JudgeLocomotiveCommand({0.0, LocomotiveCommandKind::kThrottle, 4.0, {}}, "commands[0]", without).size(),
+            1u);
 }
 
 TEST(Locomotives, TrainsWithoutThemSendNothingOfThem) {
@@ -266,8 +264,7 @@ TEST(TractionInTwoDimensions, AcceleratesMassAndWheelsets) {
     const double v0 = ride.Speed();
     ride.Run(4.0);
     const double a = 300e3 / (p.TotalMass() + EquivalentRotationalMass(p));
-    EXPECT_NEAR((ride.Speed() - v0) / 4.0, a, 3e-3 * a)
-        << driven.size();  // creep grows with the speed, a little
+    EXPECT_NEAR((ride.Speed() - v0) / 4.0, a, 3e-3 * a) << driven.size();  // creep grows with the speed, a little
     EXPECT_LT(std::abs(ride.Residual()), 1e-6 * ride.initial_energy);
     const double load_n = p.Weight() / 6.0;
     for (int i = 0; i < 6; ++i) {
@@ -293,13 +290,11 @@ TEST(TractionInTwoDimensions, AxleLoadsBalanceTheAngularMomentumAboutTheRail) {
   ride.Run(12.0);
   double moment = 0.0, inertia = 0.0, v_before[11], spin_before[11];
   const double v0 = ride.Speed();
-  for (int b = 0; b < 11; ++b)
-    v_before[b] = ride.state.velocity.x[b], spin_before[b] = ride.state.velocity.pitch[b];
+  for (int b = 0; b < 11; ++b) v_before[b] = ride.state.velocity.x[b], spin_before[b] = ride.state.velocity.pitch[b];
   constexpr int kSteps = 2000;  // the mean over the rest of the rocking
   for (int step = 0; step < kSteps; ++step) {
     ride.Run(1e-3);
-    for (int i = 0; i < 6; ++i)
-      moment += ride.wagon.wheelset_offset_m[i] * ride.output.normal_force_n[i] / kSteps;
+    for (int i = 0; i < 6; ++i) moment += ride.wagon.wheelset_offset_m[i] * ride.output.normal_force_n[i] / kSteps;
   }
   const double time_s = 1e-3 * kSteps;
   const double heights[11] = {2.0, 0.8, 0.8, 0.65, 0.65, 0.5334, 0.5334, 0.5334, 0.5334, 0.5334, 0.5334};
@@ -319,7 +314,7 @@ TEST(TractionInTwoDimensions, CreepLimitsIt) {
   ride.Run(2.0);
   const double v0 = ride.Speed();
   ride.Run(1.0);
-  EXPECT_LT(ride.Speed() - v0, 0.1 * 9.81);  // no more than the rail gives
+  EXPECT_LT(ride.Speed() - v0, 0.1 * 9.81);                                       // no more than the rail gives
   EXPECT_GT(ride.state.velocity.pitch[kWheelset1] * 0.5334, 3.0 * ride.Speed());  // the wheels spin
 }
 
@@ -336,8 +331,8 @@ TEST(SlipControl, TakesTorqueAtOnceAndGivesItBackSlowly) {
 // A 2D locomotive before five vehicles on a greasy rail: its effort is several times what the rail gives.
 struct GreasyStart {
   explicit GreasyStart(bool with_slip_control)
-      : train({"train.consist[1].count=2", "train.consist[2].count=1", "train.consist[3].count=2",
-               "duration_s=20", "train.consist[0].vehicle.wheel_rail.adhesion=low",
+      : train({"train.consist[1].count=2", "train.consist[2].count=1", "train.consist[3].count=2", "duration_s=20",
+               "train.consist[0].vehicle.wheel_rail.adhesion=low",
                std::string("train.consist[0].vehicle.traction.slip_control.gain_per_mps=") +
                    (with_slip_control ? "0.3" : "1e-9")}) {}
   PulledTrain train;

@@ -62,8 +62,7 @@ TEST(StepLtd, StopsAConstantBrakeAfterVSquaredOver2A) {
     // Exact until the last step, within which the vehicle stops: at most a dt^2 / 8, beside rounding of 6e4
     // steps.
     EXPECT_NEAR(s.x_m, std::copysign(v * v / (2.0 * deceleration), v), deceleration * kDt * kDt / 8.0 + 1e-8);
-    EXPECT_NEAR(s.work.dissipated[kBrakeShoes], 0.5 * vehicle.inertia_kg * v * v,
-                1e-9 * vehicle.inertia_kg * v * v);
+    EXPECT_NEAR(s.work.dissipated[kBrakeShoes], 0.5 * vehicle.inertia_kg * v * v, 1e-9 * vehicle.inertia_kg * v * v);
   }
 }
 
@@ -197,8 +196,7 @@ TEST(StepLtd, TheLedgerCloses) {
     coupler_work += loads.front_coupler_n * (s.x_m - x);
     for (const double lost : s.work.dissipated) ASSERT_GE(lost, 0.0);
   }
-  for (const Dissipation element :
-       {kBrakeShoes, kDynamicBrake, kRollingResistance, kCurvingResistance, kAirDrag}) {
+  for (const Dissipation element : {kBrakeShoes, kDynamicBrake, kRollingResistance, kCurvingResistance, kAirDrag}) {
     EXPECT_GT(s.work.dissipated[element], 0.0);
   }
   const double residual =

@@ -17,8 +17,7 @@ constexpr double kStrength = 9e5, kInterval = 1e-3;
 
 /// Two heads on one connection, led along an extension; the work of its forces and its energy.
 struct Pulled {
-  explicit Pulled(ConnectionParams params)
-      : forces(Two(std::move(params)), SlackState::kMiddle, 0.5 * kInterval) {
+  explicit Pulled(ConnectionParams params) : forces(Two(std::move(params)), SlackState::kMiddle, 0.5 * kInterval) {
     forces.Begin({0.0, 0.0});
   }
   static Consist Two(ConnectionParams params) {
@@ -50,8 +49,7 @@ struct Pulled {
 };
 
 TEST(Parting, CarriesNoTensionAfterwardsButPushes) {
-  for (const char* name :
-       {"draw_bar", "calibrated", "friction_gear", "ge_standard_pair", "mt2_and_polymer"}) {
+  for (const char* name : {"draw_bar", "calibrated", "friction_gear", "ge_standard_pair", "mt2_and_polymer"}) {
     Pulled pulled(LoadPart<ConnectionParams>("couplers/" + std::string(name) + ".yaml"));
     double last_n = 0.0;
     while (pulled.forces.Partings().empty() && pulled.q < 0.5) last_n = pulled.Move(0.05);
@@ -75,7 +73,8 @@ TEST(Parting, CarriesNoTensionAfterwardsButPushes) {
   }
 }
 
-// Full service brake of the paper's train whose couplers break at 80 kN; the brake is the service brake's until they do.
+// Full service brake of the paper's train whose couplers break at 80 kN; the brake is the service brake's until they
+// do.
 std::vector<std::string> Weak() {
   return {"model=ltd", "train.connection={base: friction_gear, strength_n: 8.0e4}", "duration_s=60"};
 }
@@ -103,8 +102,7 @@ TEST(Parting, OpensTheBrakePipeAndBothPartsStopByAnEmergency) {
   std::vector<double> law_pa;
   expected.PressuresAt(60.0, law_pa);
   for (std::size_t i = 0; i < law_pa.size(); ++i) EXPECT_NEAR(last_pressure_pa[i], law_pa[i], 1e-3) << i;
-  AirBrake service(loaded.params.brake->empirical, TimedBrakeCommands(loaded.params.commands),
-                   loaded.consist.centre_m);
+  AirBrake service(loaded.params.brake->empirical, TimedBrakeCommands(loaded.params.commands), loaded.consist.centre_m);
   std::vector<double> service_pa;
   service.PressuresAt(60.0, service_pa);
   EXPECT_GT(law_pa[first.connection], service_pa[first.connection] + 10e3);

@@ -25,7 +25,8 @@ DriverCommand Patch(double from_m = kFromM, double to_m = kToM, double friction 
   return command;
 }
 
-/// Ten vehicles whose foremost one is at 0 m, with 36 km/h, under an emergency brake from the start: it comes to 20 m after 2 s.
+/// Ten vehicles whose foremost one is at 0 m, with 36 km/h, under an emergency brake from the start: it comes to 20 m
+/// after 2 s.
 struct Slippery {
   explicit Slippery(const std::vector<std::string>& more, int threads = 1)
       : scenario(config::LoadScenario(ScenarioFile("emergency"), Overrides(more))),
@@ -82,12 +83,9 @@ TEST_P(PatchesOnTheWay, OneThatComesAheadOfTheTrainIsAsOneOfTheTrack) {
 TEST_P(PatchesOnTheWay, AreCommandsOfTheScenarioToo) {
   const std::string patch = "kind: friction, from_m: 20, to_m: 200, friction_coefficient: 0.01}";
   const std::uint64_t live = Live(3000);
-  EXPECT_EQ(live, DigestOf({GetParam(),
-                            "commands=[{time_s: 0, kind: emergency}, {exchange: 3000, " + patch + "]"}));
-  EXPECT_EQ(live,
-            DigestOf({GetParam(), "commands=[{time_s: 0, kind: emergency}, {time_s: 3, " + patch + "]"}));
-  EXPECT_NE(live,
-            DigestOf({GetParam(), "commands=[{time_s: 0, kind: emergency}, {time_s: 3.001, " + patch + "]"}));
+  EXPECT_EQ(live, DigestOf({GetParam(), "commands=[{time_s: 0, kind: emergency}, {exchange: 3000, " + patch + "]"}));
+  EXPECT_EQ(live, DigestOf({GetParam(), "commands=[{time_s: 0, kind: emergency}, {time_s: 3, " + patch + "]"}));
+  EXPECT_NE(live, DigestOf({GetParam(), "commands=[{time_s: 0, kind: emergency}, {time_s: 3.001, " + patch + "]"}));
 }
 
 TEST_P(PatchesOnTheWay, GoOnFromACheckpoint) {

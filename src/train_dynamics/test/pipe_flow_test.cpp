@@ -87,8 +87,7 @@ TEST(PipeFriction, IsTheLaw) {
                      : re < 40000.0 ? 0.13977 * std::pow(re, -0.11781)
                                     : 0.04;
     // The law jumps by 0.4 % at 4000, the table does not.
-    EXPECT_NEAR(friction.FactorTimesReynolds(re) / (f * re), 1.0, re > 3950.0 && re < 4050.0 ? 5e-3 : 3e-4)
-        << re;
+    EXPECT_NEAR(friction.FactorTimesReynolds(re) / (f * re), 1.0, re > 3950.0 && re < 4050.0 ? 5e-3 : 3e-4) << re;
   }
 }
 
@@ -103,8 +102,7 @@ TEST(PipeFlow, AStepTravelsAtTheIsothermalSpeedOfSound) {
       f.pressure_pa[0] = kCharged - 1e3;
       tail.See(t, dt, f);
     });
-    ExpectPublished("A: 1 kPa step at the tail, " + std::to_string(cells) + " cells [s]", tail.time(),
-                    expected, 0.01);
+    ExpectPublished("A: 1 kPa step at the tail, " + std::to_string(cells) + " cells [s]", tail.time(), expected, 0.01);
   }
 }
 
@@ -131,8 +129,8 @@ TEST(PipeFlow, AVentAtTheHead) {
                       falls[i].time(), expected[i], 0.02);
     }
     first_times.push_back(falls[3].time());
-    ExpectPublished("B: tail at 20 s, " + std::to_string(cells) + " cells [kPa]",
-                    1e-3 * flow.pressure_pa.back(), 489.7, 0.02);
+    ExpectPublished("B: tail at 20 s, " + std::to_string(cells) + " cells [kPa]", 1e-3 * flow.pressure_pa.back(), 489.7,
+                    0.02);
     EXPECT_NEAR((MassOf(grid, flow) + vented) / left, 1.0, 1e-9);
   }
   // Of first order where the gradient is steepest, 250 m from the vent: halving the cells halves the change.
@@ -152,12 +150,11 @@ TEST(PipeFlow, AServiceReductionWithAndWithoutBranches) {
         f.pressure_pa[0] = kCharged - std::min(100e3, 20e3 * t);
         for (FallTime& fall : falls) fall.See(t, dt, f);
       });
-      const std::vector<double> expected = branches ? std::vector<double>{14.99, 17.48, 32.23, 33.47}
-                                                    : std::vector<double>{13.93, 16.24, 29.80, 30.94};
+      const std::vector<double> expected =
+          branches ? std::vector<double>{14.99, 17.48, 32.23, 33.47} : std::vector<double>{13.93, 16.24, 29.80, 30.94};
       for (int i = 0; i < 4; ++i) {
-        ExpectPublished((branches ? "D: ramp, branches, " : "C: ramp, ") + std::to_string(cells) +
-                            " cells, -" + (i < 2 ? "50" : "90") + " kPa at " + (i % 2 == 0 ? "500" : "1000") +
-                            " m [s]",
+        ExpectPublished((branches ? "D: ramp, branches, " : "C: ramp, ") + std::to_string(cells) + " cells, -" +
+                            (i < 2 ? "50" : "90") + " kPa at " + (i % 2 == 0 ? "500" : "1000") + " m [s]",
                         falls[i].time(), expected[i], 0.02);
       }
     }
@@ -176,27 +173,26 @@ TEST(PipeFlow, SteadyFlowAndLeakage) {
     f.pressure_pa[0] = kCharged;
     for (int i = 0; i < 100; ++i) AddMass(grid, i, -0.0001 * dt, f);
   });
-  ExpectPublished("E: 10 g/s through, head less tail [kPa]", 600.0 - 1e-3 * through.pressure_pa.back(),
-                  600.0 - 591.469, 0.02);
+  ExpectPublished("E: 10 g/s through, head less tail [kPa]", 600.0 - 1e-3 * through.pressure_pa.back(), 600.0 - 591.469,
+                  0.02);
   ExpectPublished("E: 10 g/s of leakage, head less tail [kPa]", 600.0 - 1e-3 * leaking.pressure_pa.back(),
                   600.0 - 597.170, 0.02);
 }
 
-// (F) 60 CFM leaking uniformly from 1829 m at 90 psig: gradient 53.9 kPa with f = 0.025, 87.3 kPa with the friction law.
+// (F) 60 CFM leaking uniformly from 1829 m at 90 psig: gradient 53.9 kPa with f = 0.025, 87.3 kPa with the friction
+// law.
 TEST(PipeFlow, TheGradientOfALeakingTrain) {
   const double charged = 90.0 * 6894.76 + kAtmospherePa;
   for (bool law : {false, true}) {
-    const PipeGrid grid =
-        GridFromCentre(1829.0, 0.03175, 200, 0.0, law ? PipeFriction() : PipeFriction(0.025));
+    const PipeGrid grid = GridFromCentre(1829.0, 0.03175, 200, 0.0, law ? PipeFriction() : PipeFriction(0.025));
     PipeFlow flow(grid, charged);
     Simulate(grid, grid.LongestStep(), 900.0, flow, [&](double, double dt, PipeFlow& f) {
       f.pressure_pa[0] = charged;
       for (int i = 0; i < 200; ++i) AddMass(grid, i, -0.0341 / 200 * dt, f);
     });
     const double gradient = charged - flow.pressure_pa.back();
-    ExpectPublished(
-        law ? "F: gradient of 60 CFM, friction law [kPa]" : "F: gradient of 60 CFM, f = 0.025 [kPa]",
-        1e-3 * gradient, law ? 87.3 : 53.9, 0.02);
+    ExpectPublished(law ? "F: gradient of 60 CFM, friction law [kPa]" : "F: gradient of 60 CFM, f = 0.025 [kPa]",
+                    1e-3 * gradient, law ? 87.3 : 53.9, 0.02);
   }
 }
 
@@ -204,8 +200,7 @@ TEST(PipeFlow, AClosedFaceIsAWall) {
   const PipeGrid grid = Grid(100.0, 0.032, 20);
   PipeFlow flow(grid, kCharged);
   flow.open[10] = 0.0;
-  Simulate(grid, grid.LongestStep(), 5.0, flow,
-           [&](double, double, PipeFlow& f) { f.pressure_pa[0] = 300e3; });
+  Simulate(grid, grid.LongestStep(), 5.0, flow, [&](double, double, PipeFlow& f) { f.pressure_pa[0] = 300e3; });
   for (int i = 10; i < 20; ++i) EXPECT_EQ(flow.pressure_pa[i], kCharged);
   EXPECT_NEAR(flow.pressure_pa[9], 300e3, 1e3);
 }
@@ -220,8 +215,7 @@ TEST(PipeFlow, APartedHoseEmptiesBothSidesAlike) {
   double vented = 0.0;
   Simulate(grid, grid.LongestStep(), 30.0, flow, [&](double, double dt, PipeFlow& f) {
     for (int cell : {49, 50})
-      vented +=
-          PassToPlace(bore * grid.rt, dt, f.pressure_pa[cell], grid.volume_m3[cell], kAtmospherePa) / grid.rt;
+      vented += PassToPlace(bore * grid.rt, dt, f.pressure_pa[cell], grid.volume_m3[cell], kAtmospherePa) / grid.rt;
     for (int i = 0; i < 50; ++i) ASSERT_NEAR(f.pressure_pa[i], f.pressure_pa[99 - i], 1e-6 * kCharged);
     for (double p : f.pressure_pa) ASSERT_GE(p, 0.98 * kAtmospherePa);
   });

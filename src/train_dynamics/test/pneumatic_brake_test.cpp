@@ -79,8 +79,7 @@ TEST(DirectRelease, AReservoirThatIsNotFullGivesLess) {
   Train train(params, 1, 13.0);
   train.brake.Command(Apply(0.0, 26 * kPsi / 1e3));
   train.Run(120.0);
-  ExpectPublished("re-application, reservoir 79 psi, pipe 64 psi [psi]", train.cylinder_pa[0] / kPsi, 37.5,
-                  1.0 / 37.5);
+  ExpectPublished("re-application, reservoir 79 psi, pipe 64 psi [psi]", train.cylinder_pa[0] / kPsi, 37.5, 1.0 / 37.5);
 }
 
 TEST(DirectRelease, ASecondApplicationBeforeRechargeIsWeaker) {
@@ -118,8 +117,8 @@ TEST(DirectRelease, ARetainerKeepsItsPressure) {
   EXPECT_NEAR(train.cylinder_pa[2], 0.0, 35e3);
 }
 
-// Speed of the emergency's wave from wagon 21 to 100, 13 m of pipe each, by the vents alone. The train has 20 wagons more,
-// so that the closed tail reflects nothing.
+// Speed of the emergency's wave from wagon 21 to 100, 13 m of pipe each, by the vents alone. The train has 20 wagons
+// more, so that the closed tail reflects nothing.
 double WaveSpeed(double threshold_kpa, double vent_mm, int cells) {
   PneumaticBrakeParams params;
   params.charged_pressure_kpa = 600.0 - 101.325;
@@ -137,20 +136,17 @@ double WaveSpeed(double threshold_kpa, double vent_mm, int cells) {
     train.Run(t);
     for (int i = 0; i < 120; ++i) {
       const ControlValveState& s = train.brake.valve(i);
-      if (fired[i] < 0.0 && s.Mode() == ControlValveMode::kEmergency)
-        fired[i] = train.brake.time_s() - s.vent_open_s;
+      if (fired[i] < 0.0 && s.Mode() == ControlValveMode::kEmergency) fired[i] = train.brake.time_s() - s.vent_open_s;
     }
   }
   return 79.0 * 13.0 / (fired[99] - fired[20]);
 }
 
-// An independent program has 267.3 m/s at 20 kPa and 207 m/s at 30 kPa with vents of 6.35 mm; no front may be faster than
-// the speed lambda(d_em) of the characteristics, 268.1 and 262.9 m/s, + 1 % (at fine cells).
+// An independent program has 267.3 m/s at 20 kPa and 207 m/s at 30 kPa with vents of 6.35 mm; no front may be faster
+// than the speed lambda(d_em) of the characteristics, 268.1 and 262.9 m/s, + 1 % (at fine cells).
 TEST(Emergency, ItsWaveIsNotFittedButComesFromTheVents) {
-  ExpectPublished("emergency wave, 20 kPa, vents 6.35 mm, 64 cells [m/s]", WaveSpeed(20.0, 6.35, 64), 267.3,
-                  0.01);
-  ExpectPublished("emergency wave, 30 kPa, vents 6.35 mm, 32 cells [m/s]", WaveSpeed(30.0, 6.35, 32), 207.0,
-                  0.02);
+  ExpectPublished("emergency wave, 20 kPa, vents 6.35 mm, 64 cells [m/s]", WaveSpeed(20.0, 6.35, 64), 267.3, 0.01);
+  ExpectPublished("emergency wave, 30 kPa, vents 6.35 mm, 32 cells [m/s]", WaveSpeed(30.0, 6.35, 32), 207.0, 0.02);
   EXPECT_LT(WaveSpeed(20.0, 10.0, 64), 268.1 * 1.01);
 }
 
@@ -169,8 +165,8 @@ TEST(Emergency, ARackOf150CarsVentedAtBothEnds) {
     train.Run(t);
     if (train.Least() > 0.99 * 90.0 * kPsi * 6.0 / 7.0) full_s = t;
   }
-  ExpectPublished("rack of 150 cars, vented at both ends: all full (99 %) [s]; opening fitted to it", full_s,
-                  16.0, 2.0 / 16.0);
+  ExpectPublished("rack of 150 cars, vented at both ends: all full (99 %) [s]; opening fitted to it", full_s, 16.0,
+                  2.0 / 16.0);
 }
 
 TEST(Emergency, NothingButItsReleaseAfterTheBlockingTimeEndsIt) {
@@ -199,10 +195,8 @@ TEST(Emergency, AnAcceleratedReleaseGivesItsAirToThePipe) {
     train.Run(70.0);
     EXPECT_EQ(train.InEmergency(), 60);
     released_s[accelerated] = 70.0;
-    while (train.InEmergency() > 0 && released_s[accelerated] < 400.0)
-      train.Run(released_s[accelerated] += 0.5);
-    EXPECT_NEAR((train.brake.AirMass() + train.brake.ReleasedMass() - train.brake.SuppliedMass()) / before,
-                1.0, 1e-9);
+    while (train.InEmergency() > 0 && released_s[accelerated] < 400.0) train.Run(released_s[accelerated] += 0.5);
+    EXPECT_NEAR((train.brake.AirMass() + train.brake.ReleasedMass() - train.brake.SuppliedMass()) / before, 1.0, 1e-9);
   }
   EXPECT_LT(released_s[1], 0.9 * released_s[0]);
 }
@@ -348,8 +342,7 @@ TEST(PneumaticBrake, KeepsTheMassOfAir) {
     train.Run(160.0);
     EXPECT_GT(train.brake.SuppliedMass(), 0.01 * before);
     EXPECT_GT(train.brake.ReleasedMass(), 0.1 * before);
-    EXPECT_NEAR((train.brake.AirMass() + train.brake.ReleasedMass() - train.brake.SuppliedMass()) / before,
-                1.0, 1e-9);
+    EXPECT_NEAR((train.brake.AirMass() + train.brake.ReleasedMass() - train.brake.SuppliedMass()) / before, 1.0, 1e-9);
   }
 }
 
@@ -550,8 +543,8 @@ TEST(PneumaticBrake, NoServiceCommandIsAnEmergency) {
     }
     train.Run(t + 30.0);
     applied += train.Sum() > 0.0;
-    EXPECT_EQ(train.InEmergency(), 0)
-        << "trial " << trial << ", vehicles " << vehicles << ", cells " << params.pipe.cells_per_vehicle;
+    EXPECT_EQ(train.InEmergency(), 0) << "trial " << trial << ", vehicles " << vehicles << ", cells "
+                                      << params.pipe.cells_per_vehicle;
   }
   EXPECT_GT(applied, 20);
 }

@@ -21,8 +21,7 @@ struct Recorded {
   std::uint64_t digest = 0;
 
   std::size_t At(double t) const {
-    return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t - 1e-6) -
-                                    time_s.begin());
+    return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t - 1e-6) - time_s.begin());
   }
   int InEmergency(double t) const {
     const std::vector<double>& m = mode[At(t)];
@@ -35,8 +34,7 @@ struct Recorded {
   }
 };
 
-Recorded Simulated(const std::string& scenario, const std::vector<std::string>& overrides = {},
-                   int threads = 1) {
+Recorded Simulated(const std::string& scenario, const std::vector<std::string>& overrides = {}, int threads = 1) {
   const config::LoadedScenario loaded = config::LoadScenario(ScenarioFile(scenario), overrides);
   InProcessTransport transport(loaded.params, loaded.consist, threads);
   TrainMaster master(loaded.params, loaded.consist, transport, loaded.pressures);
@@ -63,9 +61,10 @@ TEST(Scenario, Charging) {
     ASSERT_EQ(run.cylinder_pa[i].back(), 0.0);
 }
 
-// An applied AB valve, filled up. It stops feeding at 1.7 kPa between reservoir and pipe and feeds again at 5.2, so the reservoir stands
-// between; 0.2 kPa for what a pipe falling at 20 kPa/s does in two steps of 5 ms. The cylinder has 41.0 / 16.4 = 2.5 times
-// what its reservoir gave since it was at `before_pa`, and what the limiting valve took from the pipe, which ends at 70 kPa.
+// An applied AB valve, filled up. It stops feeding at 1.7 kPa between reservoir and pipe and feeds again at 5.2, so the
+// reservoir stands between; 0.2 kPa for what a pipe falling at 20 kPa/s does in two steps of 5 ms. The cylinder has
+// 41.0 / 16.4 = 2.5 times what its reservoir gave since it was at `before_pa`, and what the limiting valve took from
+// the pipe, which ends at 70 kPa.
 void ExpectApplied(const Recorded& run, double t, std::size_t vehicle, double before_pa) {
   const std::size_t i = run.At(t);
   const double auxiliary = run.auxiliary_pa[i][vehicle], above = auxiliary - run.pipe_pa[i][vehicle];
@@ -96,8 +95,8 @@ TEST(Scenario, FullServiceAb) {
   }
 }
 
-// Speed of a rigid train of ore wagons of the paper with the run's mean cylinder pressure: Eq 3 and Eq 5, 160.1 t and the
-// wheelsets' 4 x 679 kg m2 / (0.485 m)^2 = 11.5 t.
+// Speed of a rigid train of ore wagons of the paper with the run's mean cylinder pressure: Eq 3 and Eq 5, 160.1 t and
+// the wheelsets' 4 x 679 kg m2 / (0.485 m)^2 = 11.5 t.
 double RigidSpeedKmh(const Recorded& run, double initial_kmh, double t_end) {
   const double mass = 147599.8 + 2.0 * (1103.9 + 1665.5) + 4.0 * 1731.8 + 8.0 * 6.0;
   const double inert = mass + 4.0 * 679.0 / (0.485 * 0.485);
@@ -121,8 +120,8 @@ TEST(Scenario, EmergencyAb) {
   EXPECT_LT(run.speed_kmh.back(), 0.1);
 }
 
-// 70 kPa, released for 15 s, then 50 kPa: the reservoirs of the rear are still at 530 kPa, the pipe settles at 550 kPa, and
-// their valves let go though the driver applies; 100 kPa catches them.
+// 70 kPa, released for 15 s, then 50 kPa: the reservoirs of the rear are still at 530 kPa, the pipe settles at 550 kPa,
+// and their valves let go though the driver applies; 100 kPa catches them.
 TEST(Scenario, CycleBrakingLongGrade) {
   const Recorded run = Simulated("cycle_braking_long_grade");
   const auto released = [&](double t) {
@@ -134,9 +133,9 @@ TEST(Scenario, CycleBrakingLongGrade) {
   EXPECT_GT(released(179.0), 75);
   EXPECT_EQ(run.cylinder_pa[run.At(179.0)].back(), 0.0);
   EXPECT_EQ(released(299.0), 0);
-  // The tail's reservoirs have 546 kPa at 180 s: 100 kPa below 600 are only 46 below them. So the tail's cylinders have 2.5
-  // (46 - 5.2) kPa at least, and with all that the limiting valve may add no more than 2.5 (46 - 1.7) + 70, where the head's,
-  // that never let go, have 2.5 (100 - 5.2) at least.
+  // The tail's reservoirs have 546 kPa at 180 s: 100 kPa below 600 are only 46 below them. So the tail's cylinders have
+  // 2.5 (46 - 5.2) kPa at least, and with all that the limiting valve may add no more than 2.5 (46 - 1.7) + 70, where
+  // the head's, that never let go, have 2.5 (100 - 5.2) at least.
   const double tail_reservoir = run.auxiliary_pa[run.At(179.0)].back();
   EXPECT_LT(tail_reservoir, 550e3);  // not above the pipe that the driver holds
   ExpectApplied(run, 299.0, 149, tail_reservoir);
@@ -157,9 +156,9 @@ TEST(Scenario, EcpAgainstHeadEnd) {
   for (double t = 1.0; t < 20.0; t += 1.0) EXPECT_GT(ratio(t), ratio(t + 1.0)) << t;
   EXPECT_GT(ratio(15.0), 1.0);
   EXPECT_NEAR(ratio(30.0), 1.0, 0.005);
-  // A wave of 290 m/s and a linear build-up of 10 s: 1 / (1 - L / 5800 m) at 10 s. The published 100 cars of 60 ft (1829 m)
-  // have 1.46, accepted from 1.38 to 1.52 (pneumatic_brake_test); this train of 1575 m is shorter: 1.373. The same band,
-  // -0.08 and +0.06, beside it.
+  // A wave of 290 m/s and a linear build-up of 10 s: 1 / (1 - L / 5800 m) at 10 s. The published 100 cars of 60 ft
+  // (1829 m) have 1.46, accepted from 1.38 to 1.52 (pneumatic_brake_test); this train of 1575 m is shorter: 1.373. The
+  // same band, -0.08 and +0.06, beside it.
   const double estimate = 1.0 / (1.0 - 150 * 10.5 / 5800.0);
   EXPECT_GT(ratio(10.0), estimate - 0.08);
   EXPECT_LT(ratio(10.0), estimate + 0.06);
@@ -185,10 +184,9 @@ TEST(Scenario, DistributedPowerRadioLoss) {
   EXPECT_GT(lost.cylinder_pa[lost.At(119.0)][110], 0.6 * heard.cylinder_pa[heard.At(119.0)][110]);
 }
 
-// The cylinder of a distributor of 500 kPa with 380 kPa at most over the recorded pipe: to 95 % in fill_s, from 95 % down to
-// 40 kPa in release_s, never below the first step of a tenth while it is applied.
-double DistributorPa(const Recorded& run, std::size_t vehicle, double fill_s, double release_s,
-                     double t_end) {
+// The cylinder of a distributor of 500 kPa with 380 kPa at most over the recorded pipe: to 95 % in fill_s, from 95 %
+// down to 40 kPa in release_s, never below the first step of a tenth while it is applied.
+double DistributorPa(const Recorded& run, std::size_t vehicle, double fill_s, double release_s, double t_end) {
   const double fill = std::log(10.5) / fill_s, release = std::log(0.95 * 380.0 / 40.0) / release_s;
   double p = 0.0;
   bool applied = false;
@@ -205,12 +203,11 @@ double DistributorPa(const Recorded& run, std::size_t vehicle, double fill_s, do
   return p;
 }
 
-// Why the pipe is charged slowly: its reservoirs gave 380 kPa to cylinders of 16.4 l, 62 kPa each, and 50 x 100 l take some
-// 3.7 kg back through the pipe's one end. What the reservoirs and the pipe gain behind a vehicle passes it; friction alone,
-// steady, makes the gradient:  p_i^2 - p_(i+1)^2 = f dx / D  R T  (M / A)^2.
+// Why the pipe is charged slowly: its reservoirs gave 380 kPa to cylinders of 16.4 l, 62 kPa each, and 50 x 100 l take
+// some 3.7 kg back through the pipe's one end. What the reservoirs and the pipe gain behind a vehicle passes it;
+// friction alone, steady, makes the gradient:  p_i^2 - p_(i+1)^2 = f dx / D  R T  (M / A)^2.
 double GradientOfFriction(const Recorded& run, double t) {
-  const double length_m = 1.10 * 10.5, diameter_m = 0.032,
-               area_m2 = 0.25 * 3.14159265 * diameter_m * diameter_m;
+  const double length_m = 1.10 * 10.5, diameter_m = 0.032, area_m2 = 0.25 * 3.14159265 * diameter_m * diameter_m;
   const double rt = 287.05 * 293.15, pipe_m3 = area_m2 * length_m + 0.9e-3, reservoir_m3 = 0.1;
   const std::size_t now = run.At(t), before = run.At(t - 1.0), after = run.At(t + 1.0);
   const std::size_t vehicles = run.pipe_pa[now].size();
@@ -244,17 +241,17 @@ TEST(Scenario, MixedGP) {
     EXPECT_NEAR(run.cylinder_pa[run.At(t)][5], DistributorPa(run, 5, 24.0, 52.5, t), 5e3) << t;
     EXPECT_NEAR(run.cylinder_pa[run.At(t)][10], DistributorPa(run, 10, 4.0, 17.5, t), 5e3) << t;
   }
-  // Let down by a step, to 2.533 x 70 kPa; 19 s are two time constants of P (8 s) with the pipe's rise before them: above
-  // it still, below what it was.
+  // Let down by a step, to 2.533 x 70 kPa; 19 s are two time constants of P (8 s) with the pipe's rise before them:
+  // above it still, below what it was.
   const std::vector<double>& graduated = run.cylinder_pa[run.At(44.0)];
   EXPECT_GT(graduated[10], 2.5333 * 70e3);
   EXPECT_LT(graduated[10], 0.65 * run.cylinder_pa[run.At(24.9)][10]);
   for (double t : {60.0, 80.0, 100.0})
-    EXPECT_NEAR(GradientOfFriction(run, t) / (run.pipe_pa[run.At(t)].front() - run.pipe_pa[run.At(t)].back()),
-                1.0, 0.03)
+    EXPECT_NEAR(GradientOfFriction(run, t) / (run.pipe_pa[run.At(t)].front() - run.pipe_pa[run.At(t)].back()), 1.0,
+                0.03)
         << t;
-  // A distributor lets go once its pipe is within 5 kPa; until then it has the first step at least. How long that takes the
-  // pipe: docs/air_brake.md.
+  // A distributor lets go once its pipe is within 5 kPa; until then it has the first step at least. How long that takes
+  // the pipe: docs/air_brake.md.
   for (std::size_t v = 0; v < 50; ++v) {
     const double pipe = run.pipe_pa[run.At(119.9)][v], cylinder = run.cylinder_pa[run.At(119.9)][v];
     if (pipe < 494e3) {
@@ -278,9 +275,9 @@ TEST(Scenario, TheSameDigestFromAnyNumberOfThreads) {
             Simulated("hose_parted", {"duration_s=5", "brake.charged_pressure_kpa=590"}).digest);
 }
 
-// Twelve wagons without air on a grade of 1 %: hand brakes of 10 % of the weight on two of them hold 1.67 % and more; of 4 %
-// they hold 0.67 %, and once all wagons roll the train gains (1 % - 0.67 % - 0.092 % of resistance) g, less by the 1.3 %
-// of the wheelsets' inertia.
+// Twelve wagons without air on a grade of 1 %: hand brakes of 10 % of the weight on two of them hold 1.67 % and more;
+// of 4 % they hold 0.67 %, and once all wagons roll the train gains (1 % - 0.67 % - 0.092 % of resistance) g, less by
+// the 1.3 % of the wheelsets' inertia.
 TEST(Scenario, HandBrakesHoldWhereThereIsNoAir) {
   const auto run = [](const std::string& ratio) {
     return Simulated("cycle_braking_long_grade",
@@ -320,8 +317,7 @@ TEST(Scenario, OfAPneumaticBrakeIsRefused) {
   ExpectRefused({sources + "radio_lost_from_s: 9, radio_lost_to_s: 9}]"},
                 "radio_lost_to_s must be > radio_lost_from_s");
   ExpectRefused({"brake.equipment=[{from: 1, to: 2, valve: abc}]"}, "there is no \"abc\"");
-  ExpectRefused({"brake.equipment=[{from: 1, to: 5}, {from: 5, to: 6}]"},
-                "vehicle 5 is in brake.equipment[0], too");
+  ExpectRefused({"brake.equipment=[{from: 1, to: 5}, {from: 5, to: 6}]"}, "vehicle 5 is in brake.equipment[0], too");
   ExpectRefused({"commands=[{time_s: 1, kind: apply, reduction_kpa: 100}, {time_s: 9, kind: apply, "
                  "reduction_kpa: 50}]"},
                 "valves of direct release cannot let the brake down by steps");
@@ -329,10 +325,10 @@ TEST(Scenario, OfAPneumaticBrakeIsRefused) {
 }
 
 TEST(Scenario, WarnsOfMixedReleases) {
-  const auto loaded = config::LoadScenario(
-      ScenarioFile("full_service_ab"),
-      {"brake.valves=[{name: ab, kind: direct_release}, {name: p, kind: graduated_release}]",
-       "brake.equipment=[{from: 3, to: 5, valve: p}]"});
+  const auto loaded =
+      config::LoadScenario(ScenarioFile("full_service_ab"),
+                           {"brake.valves=[{name: ab, kind: direct_release}, {name: p, kind: graduated_release}]",
+                            "brake.equipment=[{from: 3, to: 5, valve: p}]"});
   const auto tells = [&](const std::string& words) {
     return std::any_of(loaded.warnings.begin(), loaded.warnings.end(),
                        [&](const std::string& w) { return w.find(words) != std::string::npos; });

@@ -54,9 +54,8 @@ double PublishedForce(const AdhesionParams& p, double normal, double speed, doub
   const WheelContact w = PaperContact();
   const double q = 0.5 * normal;
   const double a = w.ellipse.a_per_cbrt_n * std::cbrt(q), b = w.ellipse.b_per_cbrt_n * std::cbrt(q);
-  const double mu =
-      p.friction_coefficient *
-      ((1.0 - p.friction_ratio) * std::exp(-p.friction_decay_s_per_m * slip_speed) + p.friction_ratio);
+  const double mu = p.friction_coefficient *
+                    ((1.0 - p.friction_ratio) * std::exp(-p.friction_decay_s_per_m * slip_speed) + p.friction_ratio);
   const double creepage = slip_speed / std::sqrt(speed * speed + kRegularisation * kRegularisation);
   const double eps = w.shear_modulus * kPi * a * b * w.c11 * creepage / (4.0 * q * mu);
   const double adhesion = p.adhesion_reduction * eps / (1.0 + std::pow(p.adhesion_reduction * eps, 2));
@@ -112,9 +111,8 @@ TEST(Polach, ForceOpposesSlipAndStaysWithinFriction) {
     }
     // Full sliding: atan(x) = pi/2 - 1/x, so that 1e-5 of the friction is missing at kS eps = 1e5.
     const double far = 1e5 / (p.slip_reduction * law.steepness);
-    const double sliding =
-        392.6e3 * p.friction_coefficient *
-        ((1.0 - p.friction_ratio) * std::exp(-p.friction_decay_s_per_m * far) + p.friction_ratio);
+    const double sliding = 392.6e3 * p.friction_coefficient *
+                           ((1.0 - p.friction_ratio) * std::exp(-p.friction_decay_s_per_m * far) + p.friction_ratio);
     EXPECT_NEAR(PolachForce(law, far).force, sliding, 1e-5 * sliding) << rail.name;
   }
 }
@@ -125,11 +123,9 @@ TEST(Polach, AnalyticSlopeIsTheDerivative) {
       const CreepLaw<double> law = LawOf(rail.adhesion, 392.6e3, speed);
       for (double slip = 1e-4; slip < 10.0; slip *= 1.7) {
         const double h = 1e-5 * slip;
-        const double difference =
-            (PolachForce(law, slip + h).force - PolachForce(law, slip - h).force) / (2.0 * h);
+        const double difference = (PolachForce(law, slip + h).force - PolachForce(law, slip - h).force) / (2.0 * h);
         // Error of a central difference: 1e-10 of F/w by its third derivative, 1e-11 by rounding.
-        EXPECT_NEAR(PolachForce(law, slip).slope, difference, 1e-9 * PolachForce(law, slip).force / slip)
-            << rail.name;
+        EXPECT_NEAR(PolachForce(law, slip).slope, difference, 1e-9 * PolachForce(law, slip).force / slip) << rail.name;
       }
     }
   }

@@ -37,8 +37,7 @@ void ExpectResistance(const PropulsionResistanceParams& p, double mass_kg, doubl
   const double expected[] = {standing, at_40, at_80};
   for (int i = 0; i < 3; ++i) {
     const double v = 40.0 / 3.6 * i;
-    EXPECT_NEAR(RollingResistance(c, 1e3, v) + AirDrag(c, 1e3, v), expected[i], 5e-5)
-        << 40 * i;  // printed digits
+    EXPECT_NEAR(RollingResistance(c, 1e3, v) + AirDrag(c, 1e3, v), expected[i], 5e-5) << 40 * i;  // printed digits
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace train_dynamics {
 
-/// Expects a number within a share of a published one, or one of an independent program, and prints both as a row of the
-/// table of docs/validation.md.
+/// Expects a number within a share of a published one, or one of an independent program, and prints both as a row of
+/// the table of docs/validation.md.
 inline void ExpectPublished(const std::string& what, double obtained, double published, double share) {
   EXPECT_NEAR(obtained / published, 1.0, share) << what << ": " << obtained << " instead of " << published;
   std::printf("| %s | %.5g | %.5g | %+.2f %% | %g %% |\n", what.c_str(), published, obtained,

@@ -33,8 +33,7 @@ class RideOn {
     if (loads_at) loads = loads_at(time_s + 0.5 * dt);
     const double head = CouplerHead(wagon, state.position);
     StepWagon(wagon, track, loads, dt, state, &output);
-    coupler_work_ +=
-        (loads.front_coupler_n - loads.rear_coupler_n) * (CouplerHead(wagon, state.position) - head);
+    coupler_work_ += (loads.front_coupler_n - loads.rear_coupler_n) * (CouplerHead(wagon, state.position) - head);
     time_s += dt;
   }
   void Run(double duration, double dt = kStep) {
@@ -42,23 +41,16 @@ class RideOn {
   }
 
   double Energy() const { return KineticEnergy(wagon, state) + PotentialEnergy(wagon, track, state); }
-  double Dissipated() const {
-    return std::accumulate(state.work.dissipated.begin(), state.work.dissipated.end(), 0.0);
-  }
+  double Dissipated() const { return std::accumulate(state.work.dissipated.begin(), state.work.dissipated.end(), 0.0); }
   // What the books miss [J].
   double Residual() const {
-    return Energy() + Dissipated() - initial_energy - state.work.gravity - state.work.traction -
-           coupler_work_;
+    return Energy() + Dissipated() - initial_energy - state.work.gravity - state.work.traction - coupler_work_;
   }
   // Takes the present state as the initial one.
   void Rebook() { initial_energy = Energy(); }
 
-  double Creep() const {
-    return std::accumulate(output.creep_force_n.begin(), output.creep_force_n.end(), 0.0);
-  }
-  double Shoes() const {
-    return std::accumulate(output.shoe_force_n.begin(), output.shoe_force_n.end(), 0.0);
-  }
+  double Creep() const { return std::accumulate(output.creep_force_n.begin(), output.creep_force_n.end(), 0.0); }
+  double Shoes() const { return std::accumulate(output.shoe_force_n.begin(), output.shoe_force_n.end(), 0.0); }
   double Speed() const { return state.velocity.x[kCarbody]; }
   double Distance() const { return state.position.x[kCarbody]; }
 
@@ -88,8 +80,8 @@ template <int kPerBogie>
 double Difference(const BodyVector<double, kPerBogie>& a, const BodyVector<double, kPerBogie>& b) {
   double largest = 0.0;
   for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
-    largest = std::max(
-        {largest, std::abs(a.x[i] - b.x[i]), std::abs(a.z[i] - b.z[i]), std::abs(a.pitch[i] - b.pitch[i])});
+    largest =
+        std::max({largest, std::abs(a.x[i] - b.x[i]), std::abs(a.z[i] - b.z[i]), std::abs(a.pitch[i] - b.pitch[i])});
   }
   return largest;
 }
@@ -145,8 +137,7 @@ double MirrorError(const VehicleParams& params) {
   }
   EXPECT_GT(forward.Distance(), 50.0);        // over the dip and the patch
   EXPECT_LT(std::abs(forward.Speed()), 0.1);  // to the stop
-  for (const auto* ride : {&forward, &backward})
-    EXPECT_LT(std::abs(ride->Residual()), 1e-6 * ride->initial_energy);
+  for (const auto* ride : {&forward, &backward}) EXPECT_LT(std::abs(ride->Residual()), 1e-6 * ride->initial_energy);
   return error;
 }
 

@@ -83,8 +83,7 @@ TEST(Curves, ThatCannotBeAreRefused) {
             std::string::npos)
       << RefusalOf(params);
   params.curves = {{100.0, 100.0, -400.0}};
-  EXPECT_NE(RefusalOf(params).find("to_m must be greater than from_m"), std::string::npos)
-      << RefusalOf(params);
+  EXPECT_NE(RefusalOf(params).find("to_m must be greater than from_m"), std::string::npos) << RefusalOf(params);
 }
 
 TEST(Heights, MakeTheGradesBetweenThem) {
@@ -98,8 +97,7 @@ TEST(Heights, MakeTheGradesBetweenThem) {
   EXPECT_DOUBLE_EQ(GradeAt(track, 250.0), -0.01);
   EXPECT_EQ(GradeAt(track, 1000.0), 0.0);
   params.heights[2].height_m = -60.0;  // -162.5 m on 750 m: steeper than 20 %
-  EXPECT_NE(RefusalOf(params).find("heights[2].height_m must not make a grade steeper than 20 %"),
-            std::string::npos)
+  EXPECT_NE(RefusalOf(params).find("heights[2].height_m must not make a grade steeper than 20 %"), std::string::npos)
       << RefusalOf(params);
 }
 
@@ -152,16 +150,13 @@ TEST(Points, DoNotSayTwiceWhatTheListsSay) {
   params.points = {At(0.0), At(10.0)};
   params.points[1].grade_permille = 1.0;
   params.grades = {{0.0, 0.1}};
-  EXPECT_NE(RefusalOf(params).find("points[1].grade_permille must not stand beside grades"),
-            std::string::npos)
+  EXPECT_NE(RefusalOf(params).find("points[1].grade_permille must not stand beside grades"), std::string::npos)
       << RefusalOf(params);
   params.grades.clear();
   params.points[0].height_m = 10.0;
-  EXPECT_NE(RefusalOf(params).find("points[0].height_m must not stand beside"), std::string::npos)
-      << RefusalOf(params);
+  EXPECT_NE(RefusalOf(params).find("points[0].height_m must not stand beside"), std::string::npos) << RefusalOf(params);
   params.points[0] = RoutePointParams();
-  EXPECT_NE(RefusalOf(params).find("position_m or position_km must be given"), std::string::npos)
-      << RefusalOf(params);
+  EXPECT_NE(RefusalOf(params).find("position_m or position_km must be given"), std::string::npos) << RefusalOf(params);
   params.points = {At(10.0), At(10.0)};
   EXPECT_NE(RefusalOf(params).find("points[1].position_m must lie behind that of the entry before, at 10 m"),
             std::string::npos)

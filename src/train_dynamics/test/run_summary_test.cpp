@@ -42,9 +42,8 @@ struct WagonRun {
 TEST(RunSummary, ARunawayTrainHasStoppedOnceAndRolledBackWhateverTheRecords) {
   for (const std::string interval_s : {"0.01", "0.03", "0.3"}) {
     for (const std::string duration_s : {"60", "60.6", "61.2"}) {
-      const WagonRun run({"track.grades=[{from_m: 0, grade_percent: 3}]", "commands=[]",
-                          "duration_s=" + duration_s, "record_interval_s=" + interval_s,
-                          "ledger_interval_s=" + interval_s});
+      const WagonRun run({"track.grades=[{from_m: 0, grade_percent: 3}]", "commands=[]", "duration_s=" + duration_s,
+                          "record_interval_s=" + interval_s, "ledger_interval_s=" + interval_s});
       SCOPED_TRACE(duration_s + " s, records every " + interval_s + " s");
       EXPECT_FALSE(run.summary.Stands());
       EXPECT_TRUE(run.summary.RolledBack());
@@ -63,9 +62,8 @@ TEST(RunSummary, ARunawayTrainHasStoppedOnceAndRolledBackWhateverTheRecords) {
 }
 
 TEST(RunSummary, ATrainThatIsReleasedOnAGradeHasStoppedAndMovedAgain) {
-  const WagonRun run(
-      {"track.grades=[{from_m: -1000, grade_percent: -1}]", "duration_s=160",
-       "commands=[{time_s: 1, kind: apply, reduction_kpa: 170}, {time_s: 90, kind: release}]"});
+  const WagonRun run({"track.grades=[{from_m: -1000, grade_percent: -1}]", "duration_s=160",
+                      "commands=[{time_s: 1, kind: apply, reduction_kpa: 170}, {time_s: 90, kind: release}]"});
   EXPECT_FALSE(run.summary.Stands());
   EXPECT_FALSE(run.summary.RolledBack());
   ASSERT_FALSE(run.summary.stops().empty());

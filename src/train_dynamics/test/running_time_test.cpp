@@ -1,5 +1,6 @@
-// Running times of a whole freight train against those of another program: a DB V 90 with ten loaded Facs 124 over 10 km,
-// standstill to standstill, at most 80 km/h, braked with 0.225 m/s^2 (railtoolkit/TrainRuns.jl, its tests' snapshots).
+// Running times of a whole freight train against those of another program: a DB V 90 with ten loaded Facs 124 over 10
+// km, standstill to standstill, at most 80 km/h, braked with 0.225 m/s^2 (railtoolkit/TrainRuns.jl, its tests'
+// snapshots).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,13 +51,12 @@ class Journey {
       const double wanted_n =
           now.resistance_n + now.inertia_kg * ((may_mps - now.speed_mps) * 0.5 - (brakes ? kBraking : 0.0));
       const bool free = now.speed_mps < may_mps - 0.5;
-      const double most_n = TractiveEffort(traction.tractive_effort, 8.0, now.speed_mps,
-                                           loaded_.consist.vehicle(0).DrivenWeight());
+      const double most_n =
+          TractiveEffort(traction.tractive_effort, 8.0, now.speed_mps, loaded_.consist.vehicle(0).DrivenWeight());
       request_.traction_n[0] = free ? most_n : std::clamp(wanted_n, 0.0, most_n);
       Brake(free ? 0.0 : std::max(0.0, -wanted_n), now);
       request_.exchange = exchange_;
-      forces_.Evaluate(kInterval * static_cast<double>(exchange_), reply_.head_velocity_mps,
-                       request_.coupler_force_n);
+      forces_.Evaluate(kInterval * static_cast<double>(exchange_), reply_.head_velocity_mps, request_.coupler_force_n);
       transport_.Exchange(request_, reply_);
       forces_.CloseInterval(reply_.head_displacement_m);
     }
@@ -108,9 +108,8 @@ class Journey {
 };
 
 TEST(RunningTime, MassesOfTheTrain) {
-  const config::LoadedScenario loaded =
-      config::LoadScenario(ScenarioFile("emergency"),
-                           {"model=ltd", "train=v90_10_facs", "detail_vehicles=[]", "brake=single_vehicle"});
+  const config::LoadedScenario loaded = config::LoadScenario(
+      ScenarioFile("emergency"), {"model=ltd", "train=v90_10_facs", "detail_vehicles=[]", "brake=single_vehicle"});
   const VehicleParams& v90 = loaded.consist.vehicle(0);
   const VehicleParams& facs = loaded.consist.vehicle(1);
   EXPECT_NEAR(v90.TotalMass(), 80e3, 1e-6);

@@ -26,8 +26,7 @@ TEST(Scalar, MaxAndMinKeepTheSecondOperandWhereNothingIsGreater) {
 }
 
 TEST(Scalar, ClampKeepsNaN) {
-  static_assert(Clamp(-3.0, -1.0, 2.0) == -1.0 && Clamp(3.0, -1.0, 2.0) == 2.0 &&
-                Clamp(0.5, -1.0, 2.0) == 0.5);
+  static_assert(Clamp(-3.0, -1.0, 2.0) == -1.0 && Clamp(3.0, -1.0, 2.0) == 2.0 && Clamp(0.5, -1.0, 2.0) == 0.5);
   EXPECT_EQ(Clamp(kInfinity, -1.0, 2.0), 2.0);
   EXPECT_TRUE(std::isnan(Clamp(kNaN, -1.0, 2.0)));
 }

@@ -34,8 +34,7 @@ struct Outcome {
 };
 
 /// Runs one of the project's scenarios, in process.
-inline Outcome Simulate(const std::string& scenario, const std::vector<std::string>& overrides,
-                        int threads = 1) {
+inline Outcome Simulate(const std::string& scenario, const std::vector<std::string>& overrides, int threads = 1) {
   const config::LoadedScenario loaded = config::LoadScenario(ScenarioFile(scenario), overrides);
   InProcessTransport transport(loaded.params, loaded.consist, threads);
   TrainMaster master(loaded.params, loaded.consist, transport, loaded.pressures);
@@ -53,8 +52,7 @@ inline Outcome Simulate(const std::string& scenario, const std::vector<std::stri
       initial_j = record.ledger->Stored();
       outcome.initial_kinetic_j = record.ledger->kinetic_j;
     }
-    outcome.largest_residual_j =
-        std::max(outcome.largest_residual_j, std::abs(record.ledger->Residual(initial_j)));
+    outcome.largest_residual_j = std::max(outcome.largest_residual_j, std::abs(record.ledger->Residual(initial_j)));
   });
   master.Start();
   while (!master.Done()) master.Exchange();

@@ -118,8 +118,8 @@ TEST(SixAxleStatics, EveryWheelsetCarriesASixth) {
     const auto rail = ContactForces<true>(w, Track(), {}, s);
     for (int i = 0; i < kSixWheelsets; ++i) EXPECT_NEAR(rail.normal[i], w.weight_n / 6.0, 1e-9 * w.weight_n);
   }
-  EXPECT_NEAR(SixAxleVehicle(WithDampers()).weight_n,
-              9.81 * (120e3 + 2.0 * 1103.9 + 2.0 * 8000.0 + 6.0 * 1731.8), 1e-6);
+  EXPECT_NEAR(SixAxleVehicle(WithDampers()).weight_n, 9.81 * (120e3 + 2.0 * 1103.9 + 2.0 * 8000.0 + 6.0 * 1731.8),
+              1e-6);
 }
 
 TEST(SixAxleStatics, AMiddleWheelsetOffTheCentreTakesItsShare) {
@@ -167,10 +167,8 @@ TEST(SixAxleModes, BounceAndPitchAreThoseOfACarbodyOnItsNests) {
     }
     return best;
   };
-  EXPECT_NEAR(nearest(bounce, [](const auto& m) { return m.energy_share.z[kCarbody]; }), bounce,
-              0.01 * bounce);
-  EXPECT_NEAR(nearest(pitch, [](const auto& m) { return m.energy_share.pitch[kCarbody]; }), pitch,
-              0.05 * pitch);
+  EXPECT_NEAR(nearest(bounce, [](const auto& m) { return m.energy_share.z[kCarbody]; }), bounce, 0.01 * bounce);
+  EXPECT_NEAR(nearest(pitch, [](const auto& m) { return m.energy_share.pitch[kCarbody]; }), pitch, 0.05 * pitch);
   EXPECT_GT(analysis.largest_stable_step_s, 1e-3);
 }
 
@@ -260,8 +258,7 @@ TEST_P(SixAxleKernels, MoveEachVehicleAsTheScalarStepDoes) {
         loads.front_coupler_n = coupler[i];
         loads.rear_coupler_n = coupler[i + 1];
         loads.cylinder_pressure_pa = pressure[i];
-        for (int step = 0; step < 5; ++step)
-          StepWagon<double, 3>(vehicle, {}, loads, 1e-3, states[i], nullptr);
+        for (int step = 0; step < 5; ++step) StepWagon<double, 3>(vehicle, {}, loads, 1e-3, states[i], nullptr);
       }
       ASSERT_TRUE(batch.Advance({}, 1e-3, 5, Loads(coupler, pressure), Reply(x, v), false));
     }

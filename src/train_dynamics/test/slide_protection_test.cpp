@@ -69,7 +69,8 @@ Stop QuarterWagonStop(const std::optional<SlideProtectionParams>& params, double
 }
 
 // Stop with min(C p mu_b, the creep curve's peak) / M, without rotating mass: no controller can do better.
-// @param as_in_train  with the propulsion resistance of the paper, and the calibrated emergency brake 2 s after the start
+// @param as_in_train  with the propulsion resistance of the paper, and the calibrated emergency brake 2 s after the
+//   start
 double BestDistance(bool as_in_train = false) {
   const AdhesionParams low = LoadPart<AdhesionParams>("adhesion/low.yaml");
   ShoeFrictionParams shoe;
@@ -87,8 +88,7 @@ double BestDistance(bool as_in_train = false) {
       peak = std::max(peak, PolachForce(law, creepage * v).force);
     }
     const double at = t + 0.5 * kStep;
-    const double pressure =
-        430e3 * (1.0 - std::exp(as_in_train ? -0.238 * std::max(0.0, at - 2.0) : -0.5 * at));
+    const double pressure = 430e3 * (1.0 - std::exp(as_in_train ? -0.238 * std::max(0.0, at - 2.0) : -0.5 * at));
     double force = std::min(0.25 * 0.46035 * pressure * ShoeFriction(shoe, v), peak);
     if (as_in_train) force += 1e-3 * weight * (0.92 + 0.0048 * 3.6 * v + 0.000125 * 3.6 * v * 3.6 * v);
     distance += std::max(0.0, kStep * v - 0.5 * kStep * kStep * force / mass);
@@ -117,8 +117,7 @@ TEST(SlideProtection, StopsAsThatOfAnIndependentProgram) {
 TEST(SlideProtection, EveryControllerKeepsWithinTenPercentOfTheBest) {
   const Stop locked = QuarterWagonStop({});
   const double best_m = BestDistance();
-  for (const SlideController controller :
-       {SlideController::kThreshold3State, SlideController::kCreepControl}) {
+  for (const SlideController controller : {SlideController::kThreshold3State, SlideController::kCreepControl}) {
     for (const ReferenceSpeed reference : {ReferenceSpeed::kTrue, ReferenceSpeed::kEstimated}) {
       SlideProtectionParams params;
       params.controller = controller;
@@ -204,10 +203,9 @@ TEST(SlideProtection, TheEstimateFallsNoFasterThanItsLimit) {
 
 std::vector<std::string> EmptyWagonOnLowRail(const std::string& protection) {
   std::vector<std::string> overrides = {"train.consist[0].vehicle=ore_wagon_empty",
-                                        "train.consist[0].vehicle.wheel_rail.adhesion=low",
-                                        "train.consist[0].count=3", "duration_s=90"};
-  if (!protection.empty())
-    overrides.push_back("train.consist[0].vehicle.wheel_slide_protection=" + protection);
+                                        "train.consist[0].vehicle.wheel_rail.adhesion=low", "train.consist[0].count=3",
+                                        "duration_s=90"};
+  if (!protection.empty()) overrides.push_back("train.consist[0].vehicle.wheel_slide_protection=" + protection);
   return overrides;
 }
 

@@ -17,8 +17,7 @@ namespace train_dynamics {
 namespace {
 
 struct SlideRun {
-  explicit SlideRun(const std::string& scenario, const std::vector<std::string>& overrides = {},
-                    int threads = 1)
+  explicit SlideRun(const std::string& scenario, const std::vector<std::string>& overrides = {}, int threads = 1)
       : loaded(config::LoadScenario(ScenarioFile(scenario), overrides)),
         transport(loaded.params, loaded.consist, threads),
         master(loaded.params, loaded.consist, transport, loaded.pressures),
@@ -191,10 +190,9 @@ TEST(Slides, AreAllToldHoweverManyEndBetweenTwoRecords) {
                ", to_m: " + std::to_string(69 + 30 * i) + ", friction_coefficient: 0.01}";
   }
   const auto slides = [&patches](const std::string& record_interval_s) {
-    const SlideRun run("low_adhesion_stop",
-                       {"train.consist[0].vehicle=ore_wagon_empty", "duration_s=20",
-                        "track={name: leaves, friction_patches: [" + patches + "]}", "ledger_interval_s=20",
-                        "record_interval_s=" + record_interval_s});
+    const SlideRun run("low_adhesion_stop", {"train.consist[0].vehicle=ore_wagon_empty", "duration_s=20",
+                                             "track={name: leaves, friction_patches: [" + patches + "]}",
+                                             "ledger_interval_s=20", "record_interval_s=" + record_interval_s});
     return run.results.Slides();
   };
   const std::vector<SlideEvent> often = slides("0.01"), once = slides("20");
@@ -209,8 +207,8 @@ TEST(Slides, AreAllToldHoweverManyEndBetweenTwoRecords) {
 }
 
 TEST(Slides, AreTheSameForAnyNumberOfThreads) {
-  const std::vector<std::string> overrides = {"train.consist[1].count=2", "train.consist[2].count=5",
-                                              "duration_s=30", "detail_vehicles=[]"};
+  const std::vector<std::string> overrides = {"train.consist[1].count=2", "train.consist[2].count=5", "duration_s=30",
+                                              "detail_vehicles=[]"};
   const SlideRun one("leaf_patch_train", overrides, 1), three("leaf_patch_train", overrides, 3);
   EXPECT_GT(one.results.Slides().size(), 3u);
   EXPECT_EQ(one.results.Memory(), three.results.Memory());

@@ -30,9 +30,8 @@ TEST(Soundness, CountsFromTheRail) {
 TEST(Soundness, PitchCountsFromTheRailsSlope) {
   const Wagon wagon(OreWagon());
   TrackParams steep;  // down at up to pi 1 m / 6 m = 0.52: over bogies 7 m apart a line of other slope
-  steep.dips = {{0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0},
-                {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0},
-                {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}};
+  steep.dips = {{0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0},
+                {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}, {0.0, -1.0, 60.0}};
   const Track track(steep);
   // Halfway down the 10 m high hump the rail falls by 10 pi / 60 = 0.5236.
   WagonState<double> s = StaticEquilibrium(wagon, 45.0, 5.0);

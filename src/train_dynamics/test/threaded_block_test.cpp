@@ -65,8 +65,7 @@ TEST(UsefulThreads, AreNoMoreThanTheVehiclesAreWorth) {
 TEST(Threads, AnyNumberGivesTheSameBitsOfMixedModels) {
   const std::vector<std::string> overrides = {"duration_s=3.5", "train.consist[0].model=ltd"};
   const Outcome one = Simulate("emergency", overrides, 1);
-  for (const int threads : {2, 3, 242})
-    EXPECT_EQ(Simulate("emergency", overrides, threads).digest, one.digest);
+  for (const int threads : {2, 3, 242}) EXPECT_EQ(Simulate("emergency", overrides, threads).digest, one.digest);
   EXPECT_NE(Simulate("emergency", {"duration_s=3.5"}, 1).digest, one.digest);
 }
 

@@ -1,4 +1,5 @@
-// What is under a wheel, looked up in a track of many entries, against a scan of all entries; over lanes against one by one.
+// What is under a wheel, looked up in a track of many entries, against a scan of all entries; over lanes against one by
+// one.
 
 #include "train_dynamics/track/track.h"
 
@@ -76,13 +77,11 @@ TEST(Track, GivesTheBitsOfAScanInBothDirections) {
     for (double x = -170.0; x < 170.0; x += 0.0371) positions.push_back(x);
     for (const DipParams& dip : params.dips) {
       for (const double end : {dip.from_m, dip.from_m + dip.length_m}) {
-        positions.insert(positions.end(),
-                         {end, std::nextafter(end, kInfinity), std::nextafter(end, -kInfinity)});
+        positions.insert(positions.end(), {end, std::nextafter(end, kInfinity), std::nextafter(end, -kInfinity)});
       }
     }
     for (int direction : {1, -1}) {
-      std::sort(positions.begin(), positions.end(),
-                [&](double a, double b) { return direction * a < direction * b; });
+      std::sort(positions.begin(), positions.end(), [&](double a, double b) { return direction * a < direction * b; });
       for (const double x : positions) {
         ASSERT_EQ(GradeAt(track, x), ScannedGrade(params, x)) << x;
         ASSERT_EQ(RailHeightAt(track, x).height, ScannedHeight(params, x).height) << x;
@@ -128,8 +127,7 @@ TEST(Track, GivesEveryLaneWhatItGivesOneVehicle) {
   const std::vector<FrictionPatchParams> random_patches = params.friction_patches;
   for (const bool with_leaves : {false, true}) {
     params.friction_patches = random_patches;
-    if (with_leaves)
-      params.friction_patches = {Leaves(-50.0, -20.0, 2.0), Leaves(-20.0, 3.0, 1.0), {10.0, 60.0, 0.2}};
+    if (with_leaves) params.friction_patches = {Leaves(-50.0, -20.0, 2.0), Leaves(-20.0, 3.0, 1.0), {10.0, 60.0, 0.2}};
     const Track track(params);
     for (const double apart : {0.0, 0.3, 10.5}) {
       for (double x = -120.0; x < 120.0; x += 0.0773) {
@@ -147,8 +145,7 @@ TEST(Track, GivesEveryLaneWhatItGivesOneVehicle) {
           ASSERT_EQ(surface.friction[lane], expected[0]) << at[lane];
           const CreepShape<Pack> by_lane = ShapeOf(surface);
           const std::array<double, 4> shape = {by_lane.friction_ratio[lane], by_lane.friction_decay[lane],
-                                               by_lane.adhesion_reduction[lane],
-                                               by_lane.slip_reduction[lane]};
+                                               by_lane.adhesion_reduction[lane], by_lane.slip_reduction[lane]};
           for (int i = 0; i < 4; ++i) ASSERT_EQ(shape[i], expected[i + 1]) << at[lane];
         }
       }

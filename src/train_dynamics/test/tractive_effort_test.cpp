@@ -54,8 +54,7 @@ TEST(TractiveEffort, LargestPowerOfATableLiesOnItsPointsOrBetween) {
 TEST(TractionParams, BadTablesAreRefused) {
   TractionParams p = QuickLocomotive(1e5, 1e6);
   EXPECT_NO_THROW(strict_config::Validate(p));
-  const auto expect_refused = [&p](const std::function<void(TractionParams&)>& spoil,
-                                   const std::string& words) {
+  const auto expect_refused = [&p](const std::function<void(TractionParams&)>& spoil, const std::string& words) {
     TractionParams bad = p;
     spoil(bad);
     try {
@@ -84,8 +83,7 @@ TEST(TractionParams, BadTablesAreRefused) {
 // Effort of a C44AC in notch 8 off its own meter, at six speeds (A. Krug, Railroad Facts): a constant power of
 // 3.03 MW at the rims stands for it within 3 %.
 TEST(TractiveEffort, C44acAtSixSpeeds) {
-  const std::vector<double> mph = {15, 20, 25, 30, 35, 40},
-                            effort_lbf = {100000, 77000, 61000, 51000, 44000, 38000};
+  const std::vector<double> mph = {15, 20, 25, 30, 35, 40}, effort_lbf = {100000, 77000, 61000, 51000, 44000, 38000};
   TractiveEffortParams p = QuickLocomotive(800e3, 3.03e6).tractive_effort;
   for (std::size_t i = 0; i < mph.size(); ++i) {
     const double measured_n = 4.44822 * effort_lbf[i];

@@ -46,7 +46,7 @@ TEST(Records, ComeAtTheirTimes) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(outcome.record_times[i], 0.1 * i, 1e-15);
   EXPECT_TRUE(std::isnan(outcome.accelerations.front()));
   for (int i = 1; i < 6; ++i) EXPECT_LT(outcome.accelerations[i], 0.0);  // the resistance slows it
-  EXPECT_NEAR(outcome.ledger.time_s, 0.5, 1e-15);  // the last record has a ledger, due or not
+  EXPECT_NEAR(outcome.ledger.time_s, 0.5, 1e-15);                        // the last record has a ledger, due or not
 }
 
 // Vehicles in this process, of which the second gets a brake pressure that is NaN from 0.5 s on.

@@ -104,8 +104,7 @@ TEST_P(LaneKernelsTest, MoveEachWagonAsTheScalarStepDoes) {
     arrays.Set(exchange);
     std::vector<WagonOutput<double>> outputs(states.size());
     for (int i = 0; i < kVehicles; ++i) {
-      for (int step = 0; step < 5; ++step)
-        StepWagon(wagon, track, arrays.Of(i), 1e-3, states[i], &outputs[i]);
+      for (int step = 0; step < 5; ++step) StepWagon(wagon, track, arrays.Of(i), 1e-3, states[i], &outputs[i]);
     }
     ASSERT_TRUE(batch.Advance(track, 1e-3, 5, arrays.Loads(), arrays.Reply(), with_output));
     for (int i = 0; i < kVehicles; ++i) {
@@ -200,8 +199,7 @@ TEST_P(LaneKernelsTest, MoveEachLtdVehicleAsTheScalarStepDoes) {
       arrays.Set(exchange / 10);
       std::vector<LtdOutput<double>> outputs(states.size());
       for (int i = 0; i < kVehicles; ++i) {
-        for (int step = 0; step < 3; ++step)
-          StepLtd(vehicle, hills, arrays.Of(i), 1e-3, states[i], &outputs[i]);
+        for (int step = 0; step < 3; ++step) StepLtd(vehicle, hills, arrays.Of(i), 1e-3, states[i], &outputs[i]);
       }
       ASSERT_TRUE(batch.Advance(hills, 1e-3, 3, arrays.Loads(), arrays.Reply(), true));
       for (int i = 0; i < kVehicles; ++i) {
@@ -224,8 +222,7 @@ TEST_P(LaneKernelsTest, ReportABatchWithAWagonThatIsNotSound) {
     WagonBatch batch(wagon, GetParam(), states);
     Arrays arrays;
     EXPECT_FALSE(batch.Advance({}, 1e-3, 1, arrays.Loads(), arrays.Reply(), false)) << "wagon " << broken;
-    for (int i = 0; i < kVehicles; ++i)
-      EXPECT_EQ(i != broken, IsSound(batch.vehicle(), Track(), batch.StateOf(i)));
+    for (int i = 0; i < kVehicles; ++i) EXPECT_EQ(i != broken, IsSound(batch.vehicle(), Track(), batch.StateOf(i)));
   }
 }
 

@@ -1,4 +1,5 @@
-// Vehicles that are one mass, and what vehicles carry: against masses counted by hand, and against vehicles with bodies.
+// Vehicles that are one mass, and what vehicles carry: against masses counted by hand, and against vehicles with
+// bodies.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -74,10 +75,9 @@ TEST(Load, MovesTheCarbodysCentreAndInertia) {
   // The common CG is where the moments of the weights vanish; inertia about the rail by Steiner, and back.
   const double load = 0.4 * 50000.0;
   EXPECT_DOUBLE_EQ(both.mass_kg, empty.mass_kg + load);
-  EXPECT_NEAR(empty.mass_kg * (empty.cg_height_m - both.cg_height_m) + load * (2.5 - both.cg_height_m), 0.0,
-              1e-6);
-  const double about_rail = empty.pitch_inertia_kgm2 + empty.mass_kg * empty.cg_height_m * empty.cg_height_m +
-                            0.4 * 4e5 + load * 2.5 * 2.5;
+  EXPECT_NEAR(empty.mass_kg * (empty.cg_height_m - both.cg_height_m) + load * (2.5 - both.cg_height_m), 0.0, 1e-6);
+  const double about_rail =
+      empty.pitch_inertia_kgm2 + empty.mass_kg * empty.cg_height_m * empty.cg_height_m + 0.4 * 4e5 + load * 2.5 * 2.5;
   EXPECT_NEAR(both.pitch_inertia_kgm2 + both.mass_kg * both.cg_height_m * both.cg_height_m, about_rail,
               1e-12 * about_rail);
   EXPECT_DOUBLE_EQ(wagon.TotalMass(), OreWagon().TotalMass() + load);

@@ -39,8 +39,7 @@ class RandomNumbers {
 // The numbers of all elements in one row, and those of all bodies.
 Eigen::VectorXd Row(const ElementVector<double>& e) {
   Eigen::VectorXd row(24);
-  for (int i = 0; i < 4; ++i)
-    row.segment<5>(5 * i) << e.pad_x[i], e.pad_z[i], e.nest[i], e.wedge[i], e.rim[i];
+  for (int i = 0; i < 4; ++i) row.segment<5>(5 * i) << e.pad_x[i], e.pad_z[i], e.nest[i], e.wedge[i], e.rim[i];
   row.tail<4>() << e.guide_x[0], e.guide_x[1], e.plate_x[0], e.plate_x[1];
   return row;
 }
@@ -204,8 +203,7 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
         Kick(w, force, kDt, kFrontBolster, kWheelset1, change, change);
         const ElementVector<double> rates = ElementsOf(w, change);
         response.col(end) << rates.wedge[2 * bogie], rates.wedge[2 * bogie + 1];
-        const double spring =
-            WedgeSpringForce(*w.params.friction_wedge, w.wedge.kappa * p.deflection[2 * bogie + end]);
+        const double spring = WedgeSpringForce(*w.params.friction_wedge, w.wedge.kappa * p.deflection[2 * bogie + end]);
         const auto bounds = WedgeFriction(w.wedge, 2.0 * spring, p.rate[2 * bogie + end]);
         lower[end] = bounds.lower;
         upper[end] = bounds.upper;
@@ -213,8 +211,7 @@ TEST(WedgeFriction, MeetsItsComplementarityLikeEveryCaseTriedInTurn) {
       const Eigen::Vector2d free(p.free_rate[2 * bogie], p.free_rate[2 * bogie + 1]);
       const Eigen::Vector2d solved(f[2 * bogie], f[2 * bogie + 1]);
       const double force_scale = std::max(1e-3, upper.maxCoeff() - lower.minCoeff());
-      const double rate_scale =
-          std::max(free.cwiseAbs().maxCoeff(), response.cwiseAbs().maxCoeff() * force_scale);
+      const double rate_scale = std::max(free.cwiseAbs().maxCoeff(), response.cwiseAbs().maxCoeff() * force_scale);
       // 1e-8: the solver's own error after its four sweeps, 200^-4.
       const double force_eps = 1e-8 * force_scale, rate_eps = 1e-8 * rate_scale;
 

@@ -67,15 +67,13 @@ TEST(WagonModes, PitchIsThatOfACarbodyOnTwoBogies) {
   const double a = 3.4825, arm = 2.0 - 0.55;
   const double kappa = SmoothWagon().wedge.kappa;
   const double nest = 1590e3 + 566e3, wedge = kappa * kappa * (983e3 + 566e3);
-  const double bogie =
-      1.0 / (1.0 / (4.0 * (nest + wedge)) + 1.0 / (4.0 * 3e7) + 1.0 / (4.0 * 6e8) + 1.0 / 4e8);
+  const double bogie = 1.0 / (1.0 / (4.0 * (nest + wedge)) + 1.0 / (4.0 * 3e7) + 1.0 / (4.0 * 6e8) + 1.0 / 4e8);
   const double bolster_turning = 4.0 * (nest * 0.15 * 0.15 + wedge * 0.25 * 0.25);
   const double bolster_kg = 1103.9 + 4.0 * 6.0, carbody_kg = 147599.8;
   const double bogies_kg = 2.0 * (bolster_kg + 1665.5 + 2.0 * 1731.8);
   const double reduced_kg = bogies_kg * carbody_kg / (bogies_kg + carbody_kg);
   const double inertia = 1229545.83 + 2.0 * bolster_kg * a * a + reduced_kg * arm * arm;
-  const double pitch_hz =
-      std::sqrt(2.0 * (bogie * a * a + bolster_turning) / inertia) / (2.0 * std::acos(-1.0));
+  const double pitch_hz = std::sqrt(2.0 * (bogie * a * a + bolster_turning) / inertia) / (2.0 * std::acos(-1.0));
   const WagonMode<>& pitch = Modes().modes[1];
   EXPECT_GT(pitch.energy_share.pitch[kCarbody], 0.9);
   // Left out, each less than 0.1 %: the plates give 3 % of the travel, the frames take part in 11 % of it, the
@@ -94,8 +92,7 @@ double SpeedAfter(double dt) {
   WagonOutput<double> output;
   for (int i = 0; i < 4000; ++i) StepWagon(SmoothWagon(), {}, VehicleLoads<double>(), dt, s, &output);
   double largest = 0.0;
-  for (int i = 0; i < kBodies; ++i)
-    largest = std::max({largest, std::abs(s.velocity.z[i]), std::abs(s.velocity.x[i])});
+  for (int i = 0; i < kBodies; ++i) largest = std::max({largest, std::abs(s.velocity.z[i]), std::abs(s.velocity.x[i])});
   return largest;
 }
 

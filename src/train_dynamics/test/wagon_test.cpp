@@ -92,8 +92,7 @@ TEST(Wagon, UniformTranslationAddsNothing) {
   std::vector<Ride> rides;
   for (const double speed : {0.0, 20.0}) rides.emplace_back(WithoutResistance(), TrackParams(), speed);
   for (Ride& ride : rides) {
-    for (int i = 0; i < kWheelset1; ++i)
-      ride.state.velocity.z[i] = -0.2;  // a bounce, which keeps its symmetry
+    for (int i = 0; i < kWheelset1; ++i) ride.state.velocity.z[i] = -0.2;  // a bounce, which keeps its symmetry
     ride.Run(3.0);
   }
   for (int i = 0; i < kBodies; ++i) {
@@ -360,8 +359,7 @@ TEST(Adhesion, WheelsLockOnLowFrictionAndTurnAgainAfterIt) {
       ASSERT_GE(spin, 0.0);  // never turned backwards by its brake
       locked &= spin == 0.0;
       if (spin == 0.0) {  // slides: friction to 0.1 %, kS eps is beyond 1000
-        EXPECT_NEAR(ride.output.creep_force_n[i], 0.05 * ride.output.normal_force_n[i],
-                    1e-3 * 0.05 * 392.6e3);
+        EXPECT_NEAR(ride.output.creep_force_n[i], 0.05 * ride.output.normal_force_n[i], 1e-3 * 0.05 * 392.6e3);
       }
     }
     all_locked |= locked;
@@ -473,8 +471,8 @@ TEST(Symmetry, AWagonRunningBackwardsIsTheMirrorImage) {
   frictionless.friction_wedge->static_friction_coefficient = 0.0;
   frictionless.friction_wedge->kinetic_friction_coefficient = 0.0;
   EXPECT_LT(MirrorError(frictionless), 1e-9);  // rounding of 300 m over 50000 steps
-  // The wedges' solver goes from the front end to the rear and leaves 1e-9 of its forces. Stick and slip carry that on: with
-  // 0 to 3 kN of curving resistance in place of 1 kN, 2e-8 to 3e-6 m were seen.
+  // The wedges' solver goes from the front end to the rear and leaves 1e-9 of its forces. Stick and slip carry that on:
+  // with 0 to 3 kN of curving resistance in place of 1 kN, 2e-8 to 3e-6 m were seen.
   EXPECT_LT(MirrorError(OreWagon()), 1e-5);
 }
 

@@ -24,9 +24,7 @@ const Wagon& PaperWagon() {
   return wagon;
 }
 
-AdhesionParams Rail(const std::string& name) {
-  return LoadPart<AdhesionParams>("adhesion/" + name + ".yaml");
-}
+AdhesionParams Rail(const std::string& name) { return LoadPart<AdhesionParams>("adhesion/" + name + ".yaml"); }
 
 CreepLaw<double> LawOf(const AdhesionParams& adhesion, double normal, double speed) {
   return FreezeCreepLaw(adhesion, PaperWagon().creep_stiffness, normal, adhesion.friction_coefficient, speed,
@@ -61,8 +59,7 @@ TEST(SolveSlip, MeetsTheImplicitEquation) {
           const CreepLaw<double> law = LawOf(rail, normal, speed);
           for (double w0 = 1e-7; w0 < 45.0; w0 *= 1.2) {
             const double exact = ExactForce(law, h, w0), slip = w0 - h * exact;
-            for (const double guess :
-                 {0.0, slip, 0.9995 * slip, 1.03 * slip, 0.5 * slip, 2.0 * slip, -w0, 1e3}) {
+            for (const double guess : {0.0, slip, 0.9995 * slip, 1.03 * slip, 0.5 * slip, 2.0 * slip, -w0, 1e3}) {
               const SlipSolution<double> s = SolveSlip(law, h, w0, guess);
               const double error = (s.force - exact) / law.friction_limit;
               // Too much force, so that the error damps the slip; too little only where friction falls, by w^2 F'' 1e-6
@@ -88,9 +85,9 @@ TEST(SolveSlip, WheelsetsSideBySideAreSolvedAsAlone) {
   const CreepLaw<double> dry = LawOf(Rail("dry"), kAxleLoad, 3.0), low = LawOf(Rail("low"), 1e5, 12.0);
   for (const double w0 : {1e-4, 0.02, 0.3, 11.0}) {
     for (const double guess : {0.0, 1e-4, 0.02, 11.0}) {
-      const std::array<SlipSolution<double>, 3> together = SolveSlip<double, 3>(
-          {dry, low, dry}, {TurningCompliance(), LockedCompliance(), TurningCompliance()}, {w0, 0.2, -w0},
-          {guess, 0.19, 0.0});
+      const std::array<SlipSolution<double>, 3> together =
+          SolveSlip<double, 3>({dry, low, dry}, {TurningCompliance(), LockedCompliance(), TurningCompliance()},
+                               {w0, 0.2, -w0}, {guess, 0.19, 0.0});
       EXPECT_EQ(together[0].force, SolveSlip(dry, TurningCompliance(), w0, guess).force);
       EXPECT_EQ(together[1].force, SolveSlip(low, LockedCompliance(), 0.2, 0.19).force);
       EXPECT_EQ(together[2].force, SolveSlip(dry, TurningCompliance(), -w0, 0.0).force);
@@ -144,11 +141,8 @@ struct Case {
 // Wheels of all loads at all speeds: rolling, slipping, locked, with and without brakes and traction.
 std::vector<Case> RandomCases(int count, bool with_traction) {
   std::mt19937_64 random(3);
-  const auto uniform = [&](double low, double high) {
-    return std::uniform_real_distribution<>(low, high)(random);
-  };
-  const std::vector<AdhesionParams> rails = {Rail("paper"), Rail("dry"), Rail("wet"), Rail("low"),
-                                             Rail("very_low")};
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  const std::vector<AdhesionParams> rails = {Rail("paper"), Rail("dry"), Rail("wet"), Rail("low"), Rail("very_low")};
   const double r = PaperWagon().rolling.radius_m;
   std::vector<Case> cases;
   for (int i = 0; i < count; ++i) {
@@ -158,9 +152,9 @@ std::vector<Case> RandomCases(int count, bool with_traction) {
     const double brake = i % 5 == 0 ? 0.0 : std::pow(10.0, uniform(0.0, 5.0));
     const double traction = with_traction ? uniform(-3e4, 3e4) : 0.0;
     const double normal = i % 11 == 0 ? 0.0 : std::pow(10.0, uniform(3.0, 5.9));
-    cases.push_back({LawOf(rails[i % rails.size()], normal, speed),
-                     {speed + uniform(-0.01, 0.01), spin, traction, brake, brake * (i % 4 < 2 ? 1.0 : 1.3),
-                      speed - r * spin}});
+    cases.push_back(
+        {LawOf(rails[i % rails.size()], normal, speed),
+         {speed + uniform(-0.01, 0.01), spin, traction, brake, brake * (i % 4 < 2 ? 1.0 : 1.3), speed - r * spin}});
   }
   return cases;
 }
@@ -169,8 +163,7 @@ TEST(StepRolling, BooksMomentumAndEnergyExactly) {
   const RollingInertia& inertia = PaperWagon().rolling;
   for (const Case& c : RandomCases(20000, true)) {
     const RollingResult<double> out = StepRolling(inertia, c.law, c.in, kDt);
-    const double m = 1.0 / inertia.inv_mass_per_kg, j = 1.0 / inertia.inv_inertia_per_kgm2,
-                 r = inertia.radius_m;
+    const double m = 1.0 / inertia.inv_mass_per_kg, j = 1.0 / inertia.inv_inertia_per_kgm2, r = inertia.radius_m;
     // Tolerances: rounding, a few ulp of the momenta involved.
     const double momentum = m * std::abs(c.in.speed);
     EXPECT_NEAR(m * out.speed, m * c.in.speed - kDt * out.creep_force,
@@ -184,8 +177,7 @@ TEST(StepRolling, BooksMomentumAndEnergyExactly) {
     const double gained = 0.5 * m * (out.speed * out.speed - c.in.speed * c.in.speed) +
                           0.5 * j * (out.spin * out.spin - c.in.spin * c.in.spin);
     const double moved = 0.5 * kDt * (c.in.speed + out.speed), turned = 0.5 * kDt * (c.in.spin + out.spin);
-    const double work =
-        -out.creep_force * (moved - r * turned) + (c.in.traction_torque - out.brake_torque) * turned;
+    const double work = -out.creep_force * (moved - r * turned) + (c.in.traction_torque - out.brake_torque) * turned;
     const double energy_scale = m * c.in.speed * c.in.speed + spin_scale * spin_scale / j;
     EXPECT_NEAR(gained, work, 1e-14 * energy_scale);
   }
@@ -211,8 +203,7 @@ RollingResult<double> ExactRolling(const CreepLaw<double>& law, const RollingInp
   double spin = 0.0;
   const double torque = std::clamp(holding, -in.brake_torque, in.brake_torque);
   if (std::abs(holding) > in.holding_torque) {
-    const double reach =
-        std::abs(in.spin) + std::abs(in.speed) / r + kDt / j * (1e5 + r * law.friction_limit);
+    const double reach = std::abs(in.spin) + std::abs(in.speed) / r + kDt / j * (1e5 + r * law.friction_limit);
     double low = holding > 0.0 ? 0.0 : -reach, high = holding > 0.0 ? reach : 0.0;
     for (int k = 0; k < 70; ++k) {
       const double middle = 0.5 * (low + high);
@@ -234,8 +225,7 @@ TEST(StepRolling, SolvesTheSetValuedEquations) {
     const double spare = c.in.holding_torque - std::abs(HoldingTorque(c.law, c.in));
     if (c.in.holding_torque > c.in.brake_torque && std::abs(spare) < r * tolerance) continue;  // on the edge
     EXPECT_NEAR(out.creep_force, exact.creep_force, tolerance);
-    EXPECT_NEAR(out.brake_torque, exact.brake_torque,
-                2.0 * r * tolerance + 1e-9 * std::abs(exact.brake_torque));
+    EXPECT_NEAR(out.brake_torque, exact.brake_torque, 2.0 * r * tolerance + 1e-9 * std::abs(exact.brake_torque));
     if (exact.spin == 0.0 && std::abs(exact.brake_torque) < c.in.holding_torque - r * tolerance) {
       EXPECT_EQ(out.spin, 0.0);
       ++locked;
@@ -258,8 +248,8 @@ TEST(StepRolling, TheBrakeNeverDrivesTheWheel) {
       if (out.spin != 0.0 && c.in.brake_torque > 0.0) {
         EXPECT_EQ(std::abs(out.brake_torque), c.in.brake_torque);  // full torque while turning
         EXPECT_GT(out.brake_torque * out.spin, 0.0)
-            << "v " << c.in.speed << " spin " << c.in.spin << " -> " << out.spin << " brake "
-            << c.in.brake_torque << " traction " << c.in.traction_torque << " limit " << c.law.friction_limit;
+            << "v " << c.in.speed << " spin " << c.in.spin << " -> " << out.spin << " brake " << c.in.brake_torque
+            << " traction " << c.in.traction_torque << " limit " << c.law.friction_limit;
       }
       // A wheel that rolls forward under a forward-moving vehicle may stop, but not turn back.
       if (!with_traction && c.in.speed * c.in.spin >= 0.0) {
@@ -287,25 +277,22 @@ TEST(StepRolling, LocksStaysLockedAndTurnsAgain) {
   const double r = inertia.radius_m;
   double v = 10.0, spin = 10.0 / r;
   const auto step = [&](const char* rail, double brake) {
-    const RollingResult<double> out =
-        StepRolling(inertia, LawOf(Rail(rail), kAxleLoad, v),
-                    RollingInput<double>{v, spin, 0.0, brake, brake, v - r * spin}, kDt);
+    const RollingResult<double> out = StepRolling(inertia, LawOf(Rail(rail), kAxleLoad, v),
+                                                  RollingInput<double>{v, spin, 0.0, brake, brake, v - r * spin}, kDt);
     spin = out.spin;  // the vehicle's mass keeps the speed
     return out;
   };
   const AdhesionParams low = Rail("low");
-  const double brake =
-      2.0 * r * low.friction_coefficient * kAxleLoad;  // twice what the rail can turn the wheel with
+  const double brake = 2.0 * r * low.friction_coefficient * kAxleLoad;  // twice what the rail can turn the wheel with
   for (int i = 0; i < 2000; ++i) step("low", brake);
   EXPECT_EQ(spin, 0.0);  // exactly
   const RollingResult<double> sliding = step("low", brake);
   EXPECT_EQ(spin, 0.0);
-  // The brake holds what the rail gives, not its own most: at a slip of v the friction has fallen to mu(v). Full sliding
-  // to 1 %: kS eps is above 100 at this slip.
+  // The brake holds what the rail gives, not its own most: at a slip of v the friction has fallen to mu(v). Full
+  // sliding to 1 %: kS eps is above 100 at this slip.
   EXPECT_NEAR(sliding.brake_torque, r * sliding.creep_force, 1e-9 * brake);
-  const double fallen =
-      low.friction_coefficient *
-      ((1.0 - low.friction_ratio) * std::exp(-low.friction_decay_s_per_m * v) + low.friction_ratio);
+  const double fallen = low.friction_coefficient *
+                        ((1.0 - low.friction_ratio) * std::exp(-low.friction_decay_s_per_m * v) + low.friction_ratio);
   EXPECT_NEAR(sliding.creep_force, fallen * kAxleLoad, 0.01 * fallen * kAxleLoad);
   for (int i = 0; i < 2000; ++i) step("paper", brake);
   EXPECT_NEAR(r * spin, v, 0.01 * v);  // good rail: rolls again, with the creepage of a braked wheel
@@ -315,8 +302,7 @@ TEST(StepRolling, WithoutBrakeAndSlipNothingHappens) {
   const double r = PaperWagon().rolling.radius_m;
   for (const double v : {-30.0, 0.0, 0.004, 17.0}) {
     const RollingInput<double> in{v, v / r, 0.0, 0.0, 0.0, 0.0};
-    const RollingResult<double> out =
-        StepRolling(PaperWagon().rolling, LawOf(Rail("dry"), kAxleLoad, v), in, kDt);
+    const RollingResult<double> out = StepRolling(PaperWagon().rolling, LawOf(Rail("dry"), kAxleLoad, v), in, kDt);
     // v - r (v / r) is zero or the last bit of v; the creep law makes at most 1e9 Ns/m x 4e-15 m/s of it.
     EXPECT_NEAR(out.creep_force, 0.0, 1e-5);
     EXPECT_NEAR(out.speed, v, 1e-14);

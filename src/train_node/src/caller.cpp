@@ -13,8 +13,8 @@ void EnterCallerFolder() {
   std::error_code error;
   std::filesystem::current_path(folder, error);
   if (error) {
-    throw std::invalid_argument(std::string("cannot enter the folder in which roslaunch was called, ") +
-                                folder + ": " + error.message());
+    throw std::invalid_argument(std::string("cannot enter the folder in which roslaunch was called, ") + folder + ": " +
+                                error.message());
   }
 }
 

@@ -53,12 +53,11 @@ bool NodeParameters::Has(const std::string& name) const {
 }
 
 void NodeParameters::Complain(const std::string& name, const std::string& rule) {
-  errors_.push_back(
-      fmt::format("parameter {} {}{}", name, rule, Has(name) ? ", got " + Described(values_[name]) : ""));
+  errors_.push_back(fmt::format("parameter {} {}{}", name, rule, Has(name) ? ", got " + Described(values_[name]) : ""));
 }
 
-const XmlRpcValue* NodeParameters::Find(const std::string& name,
-                                        std::initializer_list<XmlRpcValue::Type> types, const char* rule) {
+const XmlRpcValue* NodeParameters::Find(const std::string& name, std::initializer_list<XmlRpcValue::Type> types,
+                                        const char* rule) {
   known_.insert(name);
   if (!Has(name)) return nullptr;
   const XmlRpcValue& value = values_[name];
@@ -100,8 +99,7 @@ double NodeParameters::NonNegative(const std::string& name, double fallback) {
       Find(name, {XmlRpcValue::TypeDouble, XmlRpcValue::TypeInt}, "must be a plain number >= 0");
   if (value == nullptr) return fallback;
   XmlRpcValue copy = *value;
-  const double number =
-      copy.getType() == XmlRpcValue::TypeInt ? static_cast<int>(copy) : static_cast<double>(copy);
+  const double number = copy.getType() == XmlRpcValue::TypeInt ? static_cast<int>(copy) : static_cast<double>(copy);
   if (number >= 0.0 && std::isfinite(number)) return number;
   Complain(name, "must be >= 0 and finite");
   return fallback;
@@ -115,10 +113,9 @@ std::string NodeParameters::Choice(const std::string& name, const std::vector<st
   known_.insert(name);
   if (!Has(name)) return words.front();
   XmlRpcValue value = values_[name];
-  const std::string word = value.getType() == XmlRpcValue::TypeString ? static_cast<std::string>(value)
-                           : value.getType() == XmlRpcValue::TypeBoolean
-                               ? (static_cast<bool>(value) ? "true" : "false")
-                               : "";
+  const std::string word = value.getType() == XmlRpcValue::TypeString    ? static_cast<std::string>(value)
+                           : value.getType() == XmlRpcValue::TypeBoolean ? (static_cast<bool>(value) ? "true" : "false")
+                                                                         : "";
   if (std::find(words.begin(), words.end(), word) != words.end()) return word;
   const std::vector<std::string> but_last(words.begin(), words.end() - 1);
   Complain(name, fmt::format("must be {} or {}", fmt::join(but_last, ", "), words.back()));

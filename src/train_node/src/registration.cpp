@@ -52,11 +52,10 @@ std::vector<std::pair<std::string, std::string>> OwnTopics(const char* method) {
 void Register(const std::map<std::string, std::string>& services) {
   const std::string node = ros::this_node::getName();
   const std::string api = ros::XMLRPCManager::instance()->getServerURI();
-  const std::string server = "rosrpc://" + ros::network::getHost() + ":" +
-                             std::to_string(ros::ConnectionManager::instance()->getTCPPort());
+  const std::string server =
+      "rosrpc://" + ros::network::getHost() + ":" + std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   XmlRpcValue payload;
-  for (const auto& [topic, type] : OwnTopics("getPublications"))
-    Call("registerPublisher", payload, topic, type, api);
+  for (const auto& [topic, type] : OwnTopics("getPublications")) Call("registerPublisher", payload, topic, type, api);
   for (const auto& [topic, type] : OwnTopics("getSubscriptions")) {
     if (!Call("registerSubscriber", payload, topic, type, api)) continue;
     XmlRpcValue update;
@@ -65,8 +64,7 @@ void Register(const std::map<std::string, std::string>& services) {
     update[2] = payload;  // who publishes it
     CallSelf("publisherUpdate", update);
   }
-  for (const auto& [name, uri] : services)
-    Call("registerService", payload, name, uri.empty() ? server : uri, api);
+  for (const auto& [name, uri] : services) Call("registerService", payload, name, uri.empty() ? server : uri, api);
   // The mark by which Look() knows this registration comes last.
   Call("registerService", payload, node + "/set_logger_level", server, api);
   Call("registerService", payload, node + "/get_loggers", server, api);
@@ -74,8 +72,7 @@ void Register(const std::map<std::string, std::string>& services) {
 
 }  // namespace
 
-RegistrationWatch::RegistrationWatch(std::chrono::milliseconds period,
-                                     std::map<std::string, std::string> services,
+RegistrationWatch::RegistrationWatch(std::chrono::milliseconds period, std::map<std::string, std::string> services,
                                      std::function<void()> restored)
     : services_(std::move(services)), restored_(std::move(restored)) {
   thread_ = std::thread([this, period] {

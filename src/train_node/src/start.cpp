@@ -16,8 +16,7 @@ namespace train_node {
 void InitWithWallTime(int argc, char** argv, const std::string& name, std::uint32_t options) {
   train_console::PrepareProcess();
   std::vector<char*> arguments(argv, argv + argc);
-  static char wall_time[] =
-      "/use_sim_time:=/nodes_of_the_train_use_wall_time";  // a parameter that is never set
+  static char wall_time[] = "/use_sim_time:=/nodes_of_the_train_use_wall_time";  // a parameter that is never set
   arguments.push_back(wall_time);
   int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
@@ -27,8 +26,7 @@ void InitWithWallTime(int argc, char** argv, const std::string& name, std::uint3
 void WaitForOwnName() {
   constexpr std::chrono::milliseconds kPeriod(500);
   bool has_told = false;
-  void (*const handler)(int) =
-      std::signal(SIGINT, SIG_DFL);  // roscpp's only works in a node that is registered
+  void (*const handler)(int) = std::signal(SIGINT, SIG_DFL);  // roscpp's only works in a node that is registered
   for (RunningNode other; (other = FindNodeOfOwnName()).state == RunningNode::State::kAlive;) {
     if (!has_told) {
       ROS_WARN(

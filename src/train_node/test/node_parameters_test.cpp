@@ -78,8 +78,7 @@ TEST(NodeParameters, AWrongTypeIsAnErrorAndNotTheDefault) {
 }
 
 TEST(NodeParameters, NumbersOutOfRange) {
-  const double wrong[] = {-1.0, std::numeric_limits<double>::quiet_NaN(),
-                          std::numeric_limits<double>::infinity()};
+  const double wrong[] = {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
   for (const double value : wrong) {
     XmlRpcValue values;
     values["pace"] = Number(value);

@@ -1,5 +1,5 @@
-// What recorders leave in a checkpoint, forged: the input as it is, and as changes (two bytes of place, one of value) of
-// what they did leave. What is refused must have touched nothing; what is not must go on without harm.
+// What recorders leave in a checkpoint, forged: the input as it is, and as changes (two bytes of place, one of value)
+// of what they did leave. What is refused must have touched nothing; what is not must go on without harm.
 
 #include <cstddef>
 #include <cstdint>
@@ -47,8 +47,8 @@ struct Recorded {
     fs::create_directory(folder);
     const train_dynamics::config::LoadedScenario scenario = train_dynamics::config::LoadScenario(
         std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios/emergency.yaml",
-        {"train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 2}]}",
-         "brake=single_vehicle", "detail_vehicles=[1, 2]", "duration_s=0.02"});
+        {"train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 2}]}", "brake=single_vehicle",
+         "detail_vehicles=[1, 2]", "duration_s=0.02"});
     BagRecorder bag_recorder(BagFile(), scenario.params);
     CsvRecorder csv_recorder(folder);
     train_dynamics::InProcessTransport transport(scenario.params, scenario.consist, 1);

@@ -88,8 +88,7 @@ class BagFile::Scan {
     if (!description) return false;
     const Fields what = FieldsOf(*description).value_or(Fields());
     const std::string name = Value(fields, "topic");
-    auto topic =
-        std::find_if(topics_.begin(), topics_.end(), [&](const Topic& each) { return each.name == name; });
+    auto topic = std::find_if(topics_.begin(), topics_.end(), [&](const Topic& each) { return each.name == name; });
     if (topic == topics_.end()) {
       topic = topics_.insert(topic, {name, Value(what, "type"), Value(what, "md5sum"), {}});
     }

@@ -15,8 +15,7 @@ BagRecorder::BagRecorder(const std::string& file, const train_dynamics::Scenario
       pressures_topic_(bag_.AddTopic<train_brake_msgs::BrakePressures>("/train/brake_pressures")),
       ledger_topic_(bag_.AddTopic<train_brake_msgs::EnergyLedger>("/train/energy_ledger")) {
   constexpr bool kLatched = true;
-  const int scenario_topic =
-      bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
+  const int scenario_topic = bag_.AddTopic<std_msgs::String>(std::string("/train/") + kScenarioTopic, kLatched);
   bag_.Write(scenario_topic, ros::TIME_MIN, ScenarioMessage(scenario));
 }
 

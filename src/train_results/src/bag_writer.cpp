@@ -115,8 +115,7 @@ BagWriter::BagWriter(const std::string& file)
   }
 }
 
-BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint)
-    : file_(file), descriptor_(-1), size_(0) {
+BagWriter::BagWriter(const std::string& file, const Bytes& checkpoint) : file_(file), descriptor_(-1), size_(0) {
   ByteReader reader(checkpoint);
   size_ = reader.Word();
   const std::uint64_t digest = reader.Word();
@@ -304,8 +303,7 @@ void BagWriter::Fail() const {
 
 void BagWriter::Write(const std::uint8_t* bytes, std::size_t count, std::uint64_t position) {
   for (std::size_t done = 0; done < count;) {
-    const ssize_t written =
-        pwrite(descriptor_, bytes + done, count - done, static_cast<off_t>(position + done));
+    const ssize_t written = pwrite(descriptor_, bytes + done, count - done, static_cast<off_t>(position + done));
     if (written > 0) {
       done += static_cast<std::size_t>(written);
     } else if (errno != EINTR) {

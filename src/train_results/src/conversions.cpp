@@ -50,8 +50,7 @@ template <class State>
 void ConvertState(const TrainRecord& record, State& message) {
   Stamp(record, message);
   train_dynamics::ForEachRecordField(
-      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { Copy(from, to); }, record.vehicles,
-      message);
+      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { Copy(from, to); }, record.vehicles, message);
   Copy(record.acceleration_mps2, message.acceleration_mps2);
   Copy(record.vehicles.state_digest, message.vehicle_digest);
   message.state_digest = record.state_digest;
@@ -68,19 +67,15 @@ template <class Pressures>
 void ConvertPressures(const TrainRecord& record, Pressures& message) {
   Stamp(record, message);
   Copy(record.cylinder_pressure_pa, message.cylinder_pressure_pa);
-  train_dynamics::ForEachBrakeField([](const char*, const auto& from, auto& to) { Copy(from, to); },
-                                    record.brake, message);
+  train_dynamics::ForEachBrakeField([](const char*, const auto& from, auto& to) { Copy(from, to); }, record.brake,
+                                    message);
 }
 
 }  // namespace
 
-void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) {
-  ConvertState(record, message);
-}
+void Convert(const TrainRecord& record, train_brake_msgs::TrainState& message) { ConvertState(record, message); }
 void Convert(const TrainRecord& record, TrainStateView& view) { ConvertState(record, view); }
-void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) {
-  ConvertForces(record, message);
-}
+void Convert(const TrainRecord& record, train_brake_msgs::InTrainForces& message) { ConvertForces(record, message); }
 void Convert(const TrainRecord& record, InTrainForcesView& view) { ConvertForces(record, view); }
 void Convert(const TrainRecord& record, train_brake_msgs::BrakePressures& message) {
   ConvertPressures(record, message);
@@ -89,8 +84,7 @@ void Convert(const TrainRecord& record, BrakePressuresView& view) { ConvertPress
 
 void Convert(const TrainRecord& record, train_brake_msgs::Slides& message) {
   Stamp(record, message);
-  train_dynamics::ForEachSlideField([](const char*, const char*, auto& numbers) { numbers.clear(); },
-                                    message);
+  train_dynamics::ForEachSlideField([](const char*, const char*, auto& numbers) { numbers.clear(); }, message);
   for (const train_dynamics::SlideEvent& slide : record.slides) {
     train_dynamics::ForEachSlideField(
         [](const char*, const char*, const double& number, auto& numbers) {
@@ -128,8 +122,7 @@ void Convert(const TrainRecord& record, const train_dynamics::WagonDetail& detai
   message.cylinder_pressure_pa = static_cast<float>(record.held.cylinder_pressure_pa[detail.vehicle]);
 }
 
-void Convert(const train_dynamics::GivenCommand& given, double time_s,
-             train_brake_msgs::GivenCommand& message) {
+void Convert(const train_dynamics::GivenCommand& given, double time_s, train_brake_msgs::GivenCommand& message) {
   message.header.stamp.fromSec(time_s);
   message.exchange = given.exchange;
   message.command.kind = train_dynamics::NameOf(given.command.kind);
@@ -182,8 +175,7 @@ void Convert(const train_dynamics::DriverView& view, train_brake_msgs::DriverVie
   message.coupler_force_n = view.coupler_force_n;
 }
 
-train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message,
-                                        std::uint64_t exchange) {
+train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) {
   train_dynamics::DriverCommand command;
   command.exchange = static_cast<double>(exchange);
   std::string known;
@@ -212,8 +204,7 @@ train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& m
   }
   if (command.IsOfRail()) {
     for (const auto& [name, at_m] : {std::pair{"from_m", message.from_m}, std::pair{"to_m", message.to_m}}) {
-      if (!std::isfinite(at_m))
-        throw std::invalid_argument(fmt::format("{} must be finite, got {}", name, at_m));
+      if (!std::isfinite(at_m)) throw std::invalid_argument(fmt::format("{} must be finite, got {}", name, at_m));
     }
     if (message.from_m >= message.to_m)
       throw std::invalid_argument(

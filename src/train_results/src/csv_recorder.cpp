@@ -23,9 +23,7 @@ using train_dynamics::WagonDetail;
 
 constexpr const char* kHistory = "train_history.csv";
 constexpr const char* kPressures = "pressures.csv";
-std::string WagonFile(int vehicle, int vehicles) {
-  return train_dynamics::VehicleName(vehicle, vehicles) + ".csv";
-}
+std::string WagonFile(int vehicle, int vehicles) { return train_dynamics::VehicleName(vehicle, vehicles) + ".csv"; }
 
 std::ofstream Open(const std::filesystem::path& file) {
   std::ofstream stream(file);
@@ -34,8 +32,7 @@ std::ofstream Open(const std::filesystem::path& file) {
 }
 
 void Check(const std::ofstream& stream, const std::filesystem::path& file) {
-  if (!stream)
-    throw std::runtime_error("could not write all of " + file.string() + ": " + WriteFailure(errno));
+  if (!stream) throw std::runtime_error("could not write all of " + file.string() + ": " + WriteFailure(errno));
 }
 
 template <class Values>
@@ -164,9 +161,7 @@ void CsvRecorder::Record(const TrainRecord& record) {
       }
     }
     train_dynamics::ForEachBrakeField(
-        [&](const std::string& name, const std::vector<double>& values) {
-          row(brake_.at(name + ".csv"), values);
-        },
+        [&](const std::string& name, const std::vector<double>& values) { row(brake_.at(name + ".csv"), values); },
         record.brake);
   }
 
@@ -178,8 +173,8 @@ void CsvRecorder::Record(const TrainRecord& record) {
     Row(wagon, detail.output.creepage);
     Row(wagon, detail.output.creep_force_n);
     Row(wagon, detail.output.shoe_force_n);
-    Row(wagon, std::vector<double>(detail.position.pitch.begin(),
-                                   detail.position.pitch.begin() + train_dynamics::kWheelset1));
+    Row(wagon,
+        std::vector<double>(detail.position.pitch.begin(), detail.position.pitch.begin() + train_dynamics::kWheelset1));
     Row(wagon, detail.nest_compression_m);
     Row(wagon, detail.output.wedge_friction_n);
     fmt::print(wagon, ",{:.9g},{:.9g},{:.9g}\n", force[detail.vehicle], force[detail.vehicle + 1],
@@ -214,8 +209,8 @@ void WriteCouplerTable(const std::filesystem::path& folder, const train_dynamics
   std::string couplers = CouplerTable().Header();
   int number = 1;
   for (const train_dynamics::ForceExtremes& extreme : master.in_train_forces().Extremes()) {
-    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n,
-                            extreme.tension_time_s, extreme.compression_n, extreme.compression_time_s);
+    couplers += fmt::format("{},{:.9g},{:.6f},{:.9g},{:.6f}\n", number++, extreme.tension_n, extreme.tension_time_s,
+                            extreme.compression_n, extreme.compression_time_s);
   }
   WriteFile(folder / "couplers.csv", couplers);
 }

@@ -73,21 +73,20 @@ std::ifstream OpenPlainFile(const fs::path& file) {
 std::string ReadPlainFile(const fs::path& file, std::uint64_t max_bytes) {
   std::ifstream stream = OpenPlainFile(file);
   std::string text;
-  const bool has_more = ReadPieces(stream, max_bytes + 1,
-                                   [&](const char* bytes, std::size_t count) { text.append(bytes, count); });
+  const bool has_more =
+      ReadPieces(stream, max_bytes + 1, [&](const char* bytes, std::size_t count) { text.append(bytes, count); });
   if (has_more) {
     Refuse(file, "is larger than " + std::to_string(max_bytes >> 20) + " MB, the limit for such a file");
   }
   return text;
 }
 
-void AddToDigest(const fs::path& file, std::uint64_t from, std::uint64_t to,
-                 train_dynamics::StreamDigest& digest) {
+void AddToDigest(const fs::path& file, std::uint64_t from, std::uint64_t to, train_dynamics::StreamDigest& digest) {
   std::ifstream stream = OpenPlainFile(file);
   stream.seekg(static_cast<std::streamoff>(from));
-  const bool is_whole =
-      from <= to &&
-      ReadPieces(stream, to - from, [&](const char* bytes, std::size_t count) { digest.Add(bytes, count); });
+  const bool is_whole = from <= to && ReadPieces(stream, to - from, [&](const char* bytes, std::size_t count) {
+                          digest.Add(bytes, count);
+                        });
   if (!is_whole) Refuse(file, "is shorter than it was at the checkpoint");
 }
 

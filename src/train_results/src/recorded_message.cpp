@@ -138,8 +138,7 @@ class Comparison {
     if (!TakeSize(quantity, repeated.size())) return;
     for (const std::string& text : repeated) {
       std::string recorded;
-      if (!TakeSize(quantity, text.size()) ||
-          !source_.Take(static_cast<std::uint32_t>(text.size()), recorded)) {
+      if (!TakeSize(quantity, text.size()) || !source_.Take(static_cast<std::uint32_t>(text.size()), recorded)) {
         return Fail();
       }
       if (recorded != text) Add(quantity, {}, recorded, text);
@@ -189,11 +188,10 @@ class Comparison {
     Add(quantity, owners(i), Text(recorded), Text(repeated));
   }
 
-  void Add(const std::string& quantity, const Owner& owner, const std::string& recorded,
-           const std::string& repeated) {
+  void Add(const std::string& quantity, const Owner& owner, const std::string& recorded, const std::string& repeated) {
     differences_.push_back({owner.vehicle, quantity,
-                            fmt::format("{}{}{} is {} in the bag, {} now", owner.text,
-                                        owner.text.empty() ? "" : ": ", quantity, recorded, repeated)});
+                            fmt::format("{}{}{} is {} in the bag, {} now", owner.text, owner.text.empty() ? "" : ": ",
+                                        quantity, recorded, repeated)});
   }
 
   Source source_;
@@ -205,11 +203,9 @@ class Comparison {
 };
 
 template <class Message>
-std::vector<Difference> CompareFields(const Bytes& recorded, const Message& repeated,
-                                      Comparison::OwnersOf owners_of) {
+std::vector<Difference> CompareFields(const Bytes& recorded, const Message& repeated, Comparison::OwnersOf owners_of) {
   Comparison comparison(recorded, FieldNames<Message>(), std::move(owners_of));
-  ros::serialization::Serializer<Message>::template allInOne<Comparison, const Message&>(comparison,
-                                                                                         repeated);
+  ros::serialization::Serializer<Message>::template allInOne<Comparison, const Message&>(comparison, repeated);
   return comparison.Finish();
 }
 
@@ -245,9 +241,7 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::B
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::EnergyLedger& repeated) {
-  return CompareFields(recorded, repeated, OfArrays([&](std::size_t i) {
-                         return Owner{0, repeated.element[i]};
-                       }));
+  return CompareFields(recorded, repeated, OfArrays([&](std::size_t i) { return Owner{0, repeated.element[i]}; }));
 }
 
 std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::Slides& repeated) {
@@ -262,12 +256,8 @@ std::vector<Difference> Compare(const Bytes& recorded, const train_brake_msgs::W
   const int number = static_cast<int>(repeated.vehicle);
   const std::string wagon = "vehicle " + std::to_string(number);
   const Owners whole = [&](std::size_t) { return Owner{number, wagon}; };
-  const Owners body = [&](std::size_t i) {
-    return Owner{number, wagon + ", " + train_dynamics::kBodyNames.at(i)};
-  };
-  const Owners wheelset = [&](std::size_t i) {
-    return Owner{number, fmt::format("{}, wheelset {}", wagon, i + 1)};
-  };
+  const Owners body = [&](std::size_t i) { return Owner{number, wagon + ", " + train_dynamics::kBodyNames.at(i)}; };
+  const Owners wheelset = [&](std::size_t i) { return Owner{number, fmt::format("{}, wheelset {}", wagon, i + 1)}; };
   const Owners nest = [&](std::size_t i) {
     const char* const half[] = {"front", "rear"};
     return Owner{number, fmt::format("{}, {} bogie, {} half", wagon, half[i / 2], half[i % 2])};

@@ -36,8 +36,7 @@ std::string NamespaceOf(const std::string& topic) { return topic.substr(0, topic
 std::string FindTrain(const BagFile& bag, const std::string& asked) {
   std::set<std::string> trains;
   for (const BagFile::Topic& topic : bag.topics()) {
-    if (IsOf<train_brake_msgs::TrainState>(topic) && !topic.messages.empty())
-      trains.insert(NamespaceOf(topic.name));
+    if (IsOf<train_brake_msgs::TrainState>(topic) && !topic.messages.empty()) trains.insert(NamespaceOf(topic.name));
   }
   if (trains.empty()) throw UnreadableBag("holds no train_brake_msgs/TrainState");
   if (asked.empty() && trains.size() == 1) return *trains.begin();
@@ -59,8 +58,8 @@ void RecordedTopic::Advance() {
   if (done()) return;
   Load();
   if (exchange_ >= last) return;
-  throw UnreadableBag(fmt::format("{} falls from exchange {} to {}: the bag holds more than one run", name(),
-                                  last, exchange_));
+  throw UnreadableBag(
+      fmt::format("{} falls from exchange {} to {}: the bag holds more than one run", name(), last, exchange_));
 }
 
 void RecordedTopic::Load() {
@@ -113,8 +112,7 @@ std::vector<train_dynamics::DriverCommand> RecordedRun::LiveCommands() {
 
 std::optional<std::string> RecordedRun::Scenario() {
   for (const BagFile::Topic& topic : bag_.topics()) {
-    if (topic.name != train_ + "/" + kScenarioTopic || !IsOf<std_msgs::String>(topic) ||
-        topic.messages.empty())
+    if (topic.name != train_ + "/" + kScenarioTopic || !IsOf<std_msgs::String>(topic) || topic.messages.empty())
       continue;
     if (const auto text = TextOf(bag_.Read(topic.messages.front()))) return text;
   }

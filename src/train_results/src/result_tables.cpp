@@ -29,17 +29,16 @@ std::string ResultTable::Header(int vehicles) const {
 }
 
 ResultTable HistoryTable() {
-  return {
-      "train_history.csv",
-      "with --csv: the train at each record",
-      {kTime,
-       {"mean_speed_kmh", "km/h", "mean speed of the vehicles, forward positive"},
-       {"lead_speed_kmh", "km/h", "speed of the first vehicle"},
-       {"tail_speed_kmh", "km/h", "speed of the last vehicle"},
-       {"mean_position_m", "m", "mean position of the vehicles' centres along the track"},
-       {"max_tension_n", "N", "largest coupler force of the train in this record, tension positive"},
-       {"max_compression_n", "N", "least coupler force of the train in this record: compression is negative"},
-       {"mean_cylinder_pressure_pa", "Pa", "mean pressure of the brake cylinders above the atmosphere"}}};
+  return {"train_history.csv",
+          "with --csv: the train at each record",
+          {kTime,
+           {"mean_speed_kmh", "km/h", "mean speed of the vehicles, forward positive"},
+           {"lead_speed_kmh", "km/h", "speed of the first vehicle"},
+           {"tail_speed_kmh", "km/h", "speed of the last vehicle"},
+           {"mean_position_m", "m", "mean position of the vehicles' centres along the track"},
+           {"max_tension_n", "N", "largest coupler force of the train in this record, tension positive"},
+           {"max_compression_n", "N", "least coupler force of the train in this record: compression is negative"},
+           {"mean_cylinder_pressure_pa", "Pa", "mean pressure of the brake cylinders above the atmosphere"}}};
 }
 
 ResultTable PressureTable() {
@@ -50,12 +49,12 @@ ResultTable PressureTable() {
 
 std::vector<ResultTable> BrakeTables() {
   std::vector<ResultTable> tables;
-#define TRAIN_RESULTS_TABLE(name, unit, meaning)                                              \
-  tables.push_back({#name ".csv",                                                             \
-                    "with --csv and a brake of kind pneumatic: every vehicle at each record", \
-                    {kTime,                                                                   \
-                     {std::string(unit) == "-" ? "vehicle_{}" : "vehicle_{}_pa",              \
-                      std::string(unit) == "-" ? "" : unit, meaning}}});
+#define TRAIN_RESULTS_TABLE(name, unit, meaning)                                 \
+  tables.push_back(                                                              \
+      {#name ".csv",                                                             \
+       "with --csv and a brake of kind pneumatic: every vehicle at each record", \
+       {kTime,                                                                   \
+        {std::string(unit) == "-" ? "vehicle_{}" : "vehicle_{}_pa", std::string(unit) == "-" ? "" : unit, meaning}}});
   TRAIN_DYNAMICS_BRAKE_RECORD(TRAIN_RESULTS_TABLE)
 #undef TRAIN_RESULTS_TABLE
   return tables;
@@ -67,8 +66,7 @@ ResultTable WagonTable() {
                        {kTime, {"speed_mps", "m/s", "speed of the carbody, forward positive"}}};
   const auto add_wheelsets = [&table](const char* name, const char* unit, const char* meaning) {
     for (int i = 1; i <= train_dynamics::kWheelsets; ++i) {
-      table.columns.push_back(
-          {fmt::format(fmt::runtime(name), fmt::format("wheelset_{}", i)), unit, meaning});
+      table.columns.push_back({fmt::format(fmt::runtime(name), fmt::format("wheelset_{}", i)), unit, meaning});
     }
   };
   add_wheelsets("normal_force_{}_n", "N", "rail on the wheelset, compression positive; 0: lifted off");
@@ -76,8 +74,7 @@ ResultTable WagonTable() {
   add_wheelsets("creep_force_{}_n", "N", "rail on the wheelset along the track; backwards positive");
   add_wheelsets("shoe_force_{}_n", "N", "brake shoes on the treads, tangential; backwards positive");
   for (const char* body : {"carbody", "front_bolster", "rear_bolster", "front_frame", "rear_frame"}) {
-    table.columns.push_back(
-        {fmt::format("{}_pitch_rad", body), "rad", "pitch angle of the body; nose down positive"});
+    table.columns.push_back({fmt::format("{}_pitch_rad", body), "rad", "pitch angle of the body; nose down positive"});
   }
   const auto add_quarters = [&table](const char* name, const char* unit, const char* meaning) {
     for (const char* quarter : {"front_front", "front_rear", "rear_front", "rear_rear"}) {
@@ -132,13 +129,12 @@ ResultTable SlideTable() {
 }
 
 ResultTable TrackWearTable() {
-  return {
-      "track_wear.csv",
-      "where wheelsets slid: work on each metre of the track",
-      {{"from_m", "m", "where the metre begins along the track"},
-       {"to_m", "m", "where it ends"},
-       {"creep_j", "J", "energy lost in creep on this metre"},
-       {"brake_j", "J", "work of the longitudinal forces on the rail over this metre, braking positive"}}};
+  return {"track_wear.csv",
+          "where wheelsets slid: work on each metre of the track",
+          {{"from_m", "m", "where the metre begins along the track"},
+           {"to_m", "m", "where it ends"},
+           {"creep_j", "J", "energy lost in creep on this metre"},
+           {"brake_j", "J", "work of the longitudinal forces on the rail over this metre, braking positive"}}};
 }
 
 std::vector<ResultTable> ResultTables() {
@@ -158,8 +154,7 @@ const std::vector<ResultFile>& ResultFiles() {
       {"branched_from", "of a run that left another one: its checkpoint there"},
       {"replay.yaml", "of a run with live commands: the scenario with them, runs again to the same bits"},
       {"pressure_table.csv", "of a run with a `pressure_table`: a copy of it"},
-      {"summary.json",
-       "at the end, what the run came to: [below](#summaryjson); a run without it was cut off"},
+      {"summary.json", "at the end, what the run came to: [below](#summaryjson); a run without it was cut off"},
       {"report.html", "the [report](report.md), where one was made"},
   };
   return files;
@@ -202,8 +197,7 @@ const std::vector<ResultColumn>& SummaryFields() {
       {"rolled_back", "", "true: the train came back by more than 0.5 m from its furthest place"},
       {"left_route_s", "s", "when an end of the train first was beyond an end of its route; null: never"},
       {"rolled_back_m", "m", "by how far it lies behind its furthest place at the end"},
-      {"max_tension_n.value", "N",
-       "largest coupler force of all exchanges; max_tension_n is null without connections"},
+      {"max_tension_n.value", "N", "largest coupler force of all exchanges; max_tension_n is null without connections"},
       {"max_tension_n.connection", "", "where it was, from 1"},
       {"max_tension_n.time_s", "s", "when it was"},
       {"max_compression_n.value", "N", "largest compression, as a negative force"},
@@ -213,8 +207,7 @@ const std::vector<ResultColumn>& SummaryFields() {
       {"partings[].time_s", "s", "when they did"},
       {"twin.start_offset_kmh", "km/h",
        "with --twin: by how much the start of a second run differed; twin is null without"},
-      {"twin.max_tension_spread_n", "N",
-       "largest difference of a connection's largest tension between the two"},
+      {"twin.max_tension_spread_n", "N", "largest difference of a connection's largest tension between the two"},
       {"twin.max_compression_spread_n", "N", "the same of compression"},
       {"twin.distance_spread_m", "m", "difference of the mean distances run"},
       {"twin.final_speed_spread_kmh", "km/h", "difference of the mean speeds at the end"},

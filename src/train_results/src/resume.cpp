@@ -41,9 +41,8 @@ std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
   std::string text;
   for (const train_dynamics::DriverCommand& command : scenario.commands) {
     if (command.time_s.value_or(0.0) > time_s) continue;
-    text +=
-        fmt::format("({}: {}) ", command.time_s ? fmt::format("{:g} s", *command.time_s) : "on a condition",
-                    command.Text());
+    text += fmt::format("({}: {}) ", command.time_s ? fmt::format("{:g} s", *command.time_s) : "on a condition",
+                        command.Text());
   }
   return text.empty() ? "none" : text.substr(0, text.size() - 1);
 }
@@ -52,8 +51,7 @@ std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
 void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double time_s) {
   const auto keep = [](const char* key, const auto& value, const auto& was) {
     if (value == was) return;
-    throw std::invalid_argument(
-        fmt::format("{} must stay {} when a run is resumed, got {}", key, was, value));
+    throw std::invalid_argument(fmt::format("{} must stay {} when a run is resumed, got {}", key, was, value));
   };
   const ScenarioParams &p = now.params, &q = then.params;
   keep("model", std::string(ModelName(p.model)), std::string(ModelName(q.model)));
@@ -80,8 +78,7 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double t
   if (p.initial_slack != q.initial_slack) {
     throw std::invalid_argument("initial_slack must stay as it is when a run is resumed");
   }
-  keep(fmt::format("commands up to {:g} s", time_s).c_str(), CommandsUntil(time_s, p),
-       CommandsUntil(time_s, q));
+  keep(fmt::format("commands up to {:g} s", time_s).c_str(), CommandsUntil(time_s, p), CommandsUntil(time_s, q));
   if (p.integrator != q.integrator) {
     throw std::invalid_argument("integrator must stay as it is when a run is resumed");
   }
@@ -91,8 +88,8 @@ void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double t
 
 train_dynamics::TrainCheckpoint ReadCheckpoint(const fs::path& file) {
   if (!fs::exists(file)) {
-    throw std::invalid_argument(
-        file.string() + " does not exist: the run has left no checkpoint, or it is no folder of a run");
+    throw std::invalid_argument(file.string() +
+                                " does not exist: the run has left no checkpoint, or it is no folder of a run");
   }
   const std::string content = ReadPlainFile(file, kLargestFile);
   try {
@@ -122,21 +119,18 @@ ResumedRun LoadResumedRun(const fs::path& folder, const std::vector<std::string>
     throw std::invalid_argument(fmt::format(
         "{} was written by '{}', this is '{}': other versions may give other bits. Finish the run with the "
         "version that began it, or run its config.yaml again",
-        (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2),
-        VersionLine().substr(2)));
+        (folder / kCheckpointFile).string(), FirstLine(checkpoint.scenario).substr(2), VersionLine().substr(2)));
   }
   if (identity != checkpoint.scenario) {
-    throw std::invalid_argument(
-        fmt::format("{} is of another configuration than {}: there is now {}. Undo that, or change values "
-                    "with --set: the "
-                    "result is then a run of its own",
-                    (folder / kCheckpointFile).string(), config.string(),
-                    FirstDifference(identity, checkpoint.scenario)));
+    throw std::invalid_argument(fmt::format(
+        "{} is of another configuration than {}: there is now {}. Undo that, or change values "
+        "with --set: the "
+        "result is then a run of its own",
+        (folder / kCheckpointFile).string(), config.string(), FirstDifference(identity, checkpoint.scenario)));
   }
   LoadedScenario now = train_dynamics::config::LoadScenario(config.string(), overrides);
   const bool is_branch = IdentityOf(now.params) != identity;
-  if (is_branch)
-    CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
+  if (is_branch) CheckBranch(now, then, then.params.exchange_interval_s * static_cast<double>(checkpoint.exchange));
   if (static_cast<long>(checkpoint.exchange) >= now.params.Exchanges()) {
     throw std::invalid_argument(
         fmt::format("{} was taken at the end of the run, {:g} s: nothing is left to simulate; a larger "

@@ -26,8 +26,7 @@ using train_dynamics::ScenarioParams;
 constexpr const char* kBag = "train.bag";
 
 /// First line of the config.yaml of a run: the mark of a folder that holds results of ours and nothing of the user's.
-constexpr const char* kMark =
-    "# A run of train_brake: everything resolved. Running it again gives the same bits.";
+constexpr const char* kMark = "# A run of train_brake: everything resolved. Running it again gives the same bits.";
 
 fs::path FolderOf(const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)).parent_path(); }
 
@@ -57,10 +56,9 @@ void MakeFolder(const fs::path& folder) {
   if (!error) return;
   std::string reason = error.message();
   for (fs::path part = folder; part.has_relative_path(); part = part.parent_path()) {
-    if (fs::is_symlink(fs::symlink_status(part, error)) &&
-        fs::status(part, error).type() == fs::file_type::not_found) {
-      reason = part.string() + " is a symbolic link to " + fs::read_symlink(part, error).string() +
-               ", which does not exist";
+    if (fs::is_symlink(fs::symlink_status(part, error)) && fs::status(part, error).type() == fs::file_type::not_found) {
+      reason =
+          part.string() + " is a symbolic link to " + fs::read_symlink(part, error).string() + ", which does not exist";
     }
   }
   throw std::runtime_error("the folder " + folder.string() + " cannot be made for the results: " + reason);
@@ -97,8 +95,7 @@ void WriteResolvedConfig(ScenarioParams scenario, const fs::path& folder) {
 }
 
 /// The scenario of a run that was given live commands: with them, each at its exchange.
-void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule& schedule,
-                 const fs::path& folder) {
+void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule& schedule, const fs::path& folder) {
   bool is_live = false;
   for (const train_dynamics::GivenCommand& given : schedule.Given()) {
     if (!given.is_live) continue;
@@ -108,15 +105,13 @@ void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule&
   }
   if (!is_live) return;
   if (!scenario.pressure_table.empty()) scenario.pressure_table = "pressure_table.csv";
-  WriteFile(folder / "replay.yaml",
-            "# A run with live commands, as a scenario: running it gives the same bits.\n" +
-                strict_config::Write(scenario));
+  WriteFile(folder / "replay.yaml", "# A run with live commands, as a scenario: running it gives the same bits.\n" +
+                                        strict_config::Write(scenario));
 }
 
 /// What recorders write and go on with.
 bool IsRecord(const std::string& name) {
-  static const std::regex pattern(
-      "train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
+  static const std::regex pattern("train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
 
@@ -146,8 +141,7 @@ long CheckpointExchanges(const OutputOptions& options, const ScenarioParams& sce
 
 }  // namespace
 
-RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& inputs,
-                     const ScenarioParams& scenario)
+RunOutput::RunOutput(const OutputOptions& options, const std::vector<fs::path>& inputs, const ScenarioParams& scenario)
     : options_(options),
       folder_(options.folder),
       scenario_(scenario),
@@ -206,8 +200,7 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   if (csv_ != nullptr) csv_->GoOn();
   if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));
-  for (const char* old :
-       {"summary.json", "couplers.csv", "slides.csv", "track_wear.csv", "replay.yaml", "report.html"})
+  for (const char* old : {"summary.json", "couplers.csv", "slides.csv", "track_wear.csv", "replay.yaml", "report.html"})
     fs::remove(folder_ / old);
   StartThread();
 }
@@ -236,22 +229,19 @@ void RunOutput::Record(const train_dynamics::TrainRecord& record) {
 }
 
 bool RunOutput::AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted) const {
-  if (folder_.empty() || checkpoint_exchanges_ == 0 || error_ != nullptr || !master.RecordIsNext())
-    return false;
+  if (folder_.empty() || checkpoint_exchanges_ == 0 || error_ != nullptr || !master.RecordIsNext()) return false;
   const auto next = static_cast<long>(master.exchange()) + 1;
   if (!wanted && next % checkpoint_exchanges_ != 0 && next != master.exchanges()) return false;
   master.AskForCheckpoint();
   return true;
 }
 
-void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master,
-                               const train_dynamics::RunSummary& summary) {
+void RunOutput::KeepCheckpoint(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary) {
   Attempt([&] {
     train_dynamics::TrainCheckpoint checkpoint = master.Checkpoint();
     checkpoint.scenario = identity_;
     checkpoint.summary = summary.Memory();
-    thread_->Do(
-        [this, checkpoint = std::move(checkpoint)]() mutable { LeaveCheckpoint(std::move(checkpoint)); });
+    thread_->Do([this, checkpoint = std::move(checkpoint)]() mutable { LeaveCheckpoint(std::move(checkpoint)); });
   });
 }
 

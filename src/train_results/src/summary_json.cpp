@@ -24,11 +24,10 @@ constexpr double kKmhPerMps = 3.6;
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 /// The largest force over all connections; null for a train without connections.
-Json Extreme(const std::vector<ForceExtremes>& extremes, double ForceExtremes::*force,
-             double ForceExtremes::*time) {
-  const auto largest = std::max_element(
-      extremes.begin(), extremes.end(),
-      [force](const auto& a, const auto& b) { return std::abs(a.*force) < std::abs(b.*force); });
+Json Extreme(const std::vector<ForceExtremes>& extremes, double ForceExtremes::*force, double ForceExtremes::*time) {
+  const auto largest = std::max_element(extremes.begin(), extremes.end(), [force](const auto& a, const auto& b) {
+    return std::abs(a.*force) < std::abs(b.*force);
+  });
   if (largest == extremes.end()) return {};
   return {{"value", Number((*largest).*force)},
           {"connection", largest - extremes.begin() + 1},
@@ -65,9 +64,8 @@ Json Commands(const RunSummary& summary, const TrainMaster& master) {
 Json Stops(const RunSummary& summary) {
   Json list = Json::array();
   for (const RunSummary::Stop& stop : summary.stops()) {
-    list.push_back({{"time_s", Number(stop.time_s)},
-                    {"distance_m", Number(stop.distance_m)},
-                    {"until_s", Number(stop.until_s)}});
+    list.push_back(
+        {{"time_s", Number(stop.time_s)}, {"distance_m", Number(stop.distance_m)}, {"until_s", Number(stop.until_s)}});
   }
   return list;
 }
@@ -85,8 +83,7 @@ Json Twin(const RunSummary& summary, const TrainMaster& master) {
           {"max_tension_spread_n", tension_n},
           {"max_compression_spread_n", compression_n},
           {"distance_spread_m", Number(std::abs(summary.mean_distance_m() - twin->distance_m))},
-          {"final_speed_spread_kmh",
-           Number(kKmhPerMps * std::abs(summary.mean_speed_mps() - twin->mean_speed_mps))}};
+          {"final_speed_spread_kmh", Number(kKmhPerMps * std::abs(summary.mean_speed_mps() - twin->mean_speed_mps))}};
 }
 
 Json Slides(const RunSummary& summary) {
@@ -137,11 +134,9 @@ Json Energy(const RunSummary& summary, const TrainMaster& master) {
 
 }  // namespace
 
-std::string SummaryJson(const RunSummary& summary, const TrainMaster& master, double wall_s,
-                        const std::string& fault) {
+std::string SummaryJson(const RunSummary& summary, const TrainMaster& master, double wall_s, const std::string& fault) {
   const train_dynamics::ScenarioParams& scenario = summary.scenario();
-  const double own_s =
-      master.time_s() - master.start_s();  // of this process: without what it was resumed from
+  const double own_s = master.time_s() - master.start_s();  // of this process: without what it was resumed from
   const double vehicle_steps = own_s / scenario.dt_s * summary.vehicles();
   const std::vector<ForceExtremes> extremes = master.in_train_forces().Extremes();
   Json json;
@@ -179,8 +174,7 @@ std::string SummaryJson(const RunSummary& summary, const TrainMaster& master, do
   json["left_route_s"] = Number(summary.left_route_s());
   json["rolled_back_m"] = Number(summary.BehindFurthest());
   json["max_tension_n"] = Extreme(extremes, &ForceExtremes::tension_n, &ForceExtremes::tension_time_s);
-  json["max_compression_n"] =
-      Extreme(extremes, &ForceExtremes::compression_n, &ForceExtremes::compression_time_s);
+  json["max_compression_n"] = Extreme(extremes, &ForceExtremes::compression_n, &ForceExtremes::compression_time_s);
   json["partings"] = Partings(master);
   json["twin"] = Twin(summary, master);
   json["slides"] = Slides(summary);

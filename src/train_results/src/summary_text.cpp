@@ -67,8 +67,7 @@ std::string Slides(const Json& summary) {
   if (number == 0) return "";
   const auto flats = slides.at("flat_risks").get<std::size_t>();
   return fmt::format("  {} slid, {} in all{}\n", Count(slides.at("wheelsets").size(), "wheelset"),
-                     Count(number, "slide"),
-                     flats == 0 ? "" : fmt::format(", with a risk of a flat on {}", flats));
+                     Count(number, "slide"), flats == 0 ? "" : fmt::format(", with a risk of a flat on {}", flats));
 }
 
 std::string Twin(const Json& summary) {
@@ -98,8 +97,9 @@ std::string Text(const Json& summary) {
     text += fmt::format("  it left its route at {:.1f} s\n", Number(summary, "left_route_s"));
   text += Slides(summary) + Twin(summary);
   if (!summary.at("complete").get<bool>()) {
-    text += "  INCOMPLETE: " +
-            (Has(summary, "fault") ? summary.at("fault").get<std::string>() : "the run was stopped") + "\n";
+    text +=
+        "  INCOMPLETE: " + (Has(summary, "fault") ? summary.at("fault").get<std::string>() : "the run was stopped") +
+        "\n";
   }
   return text;
 }

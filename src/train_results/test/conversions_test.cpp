@@ -44,8 +44,8 @@ Names RecordNames() {
 TEST(Lists, HaveEveryArrayOfTheRecordOfARank) {
   Names names = RecordNames();
   train_dynamics::VehicleEnergy energy;
-  train_dynamics::ForEachEnergy(
-      [&](const train_dynamics::FieldInfo& field, const auto&) { names.insert(field.name); }, energy);
+  train_dynamics::ForEachEnergy([&](const train_dynamics::FieldInfo& field, const auto&) { names.insert(field.name); },
+                                energy);
   names.insert({"wheelset_work_j", "slides"});  // of wheelsets, whose number varies
   EXPECT_EQ(ArraysOf<train_brake_msgs::RankRecord>(), names)
       << "vehicle/vehicle_record.h and vehicle/work.h list what RankRecord.msg has";
@@ -54,8 +54,7 @@ TEST(Lists, HaveEveryArrayOfTheRecordOfARank) {
 TEST(Lists, HaveEveryArrayOfSlides) {
   Names names;
   train_dynamics::SlideEvent slide;
-  train_dynamics::ForEachSlideField([&](const char* name, const char*, double) { names.insert(name); },
-                                    slide);
+  train_dynamics::ForEachSlideField([&](const char* name, const char*, double) { names.insert(name); }, slide);
   for (const char* of_whole_numbers : {"vehicle", "wheelset", "is_over"}) names.erase(of_whole_numbers);
   EXPECT_EQ(ArraysOf<train_brake_msgs::Slides>(), names) << "vehicle/slide_event.h lists what Slides.msg has";
 }
@@ -70,16 +69,14 @@ TEST(Lists, HaveEveryArrayOfTheStateOfATrain) {
 TEST(Lists, HaveEveryArrayOfARequestAndItsReply) {
   Names names = {"coupler_force_n", "friction_patches"};  // of connections, of the rail
   train_dynamics::LoadArrays loads;
-  train_dynamics::ForEachLoad(
-      [&](const train_dynamics::LoadInfo& load, const auto&) { names.insert(load.name); }, loads);
-  EXPECT_EQ(ArraysOf<train_brake_msgs::StepRequest>(), names)
-      << "vehicle/vehicle_loads.h lists what Step.srv has";
+  train_dynamics::ForEachLoad([&](const train_dynamics::LoadInfo& load, const auto&) { names.insert(load.name); },
+                              loads);
+  EXPECT_EQ(ArraysOf<train_brake_msgs::StepRequest>(), names) << "vehicle/vehicle_loads.h lists what Step.srv has";
   names.clear();
   train_dynamics::ReplyArrays reply;
   train_dynamics::ForEachReplyField(
       [&](const train_dynamics::RecordInfo& field, const auto&) { names.insert(field.name); }, reply);
-  EXPECT_EQ(ArraysOf<train_brake_msgs::StepResponse>(), names)
-      << "vehicle/vehicle_record.h lists what Step.srv has";
+  EXPECT_EQ(ArraysOf<train_brake_msgs::StepResponse>(), names) << "vehicle/vehicle_record.h lists what Step.srv has";
   EXPECT_EQ(ArraysOf<train_brake_msgs::ConfigureResponse>(), names);
 }
 
@@ -135,8 +132,8 @@ TEST(Conversions, ViewsHaveTheBytesOfTheirMessages) {
       array.clear();
       for (int i = 0; i < count; ++i) array.push_back(number *= -1.3);
     };
-    train_dynamics::ForEachRecordField(
-        [&](const train_dynamics::RecordInfo&, auto& array) { fill(array, vehicles); }, record.vehicles);
+    train_dynamics::ForEachRecordField([&](const train_dynamics::RecordInfo&, auto& array) { fill(array, vehicles); },
+                                       record.vehicles);
     record.vehicles.state_digest.assign(vehicles, 0xfedcba9876543210);
     fill(record.acceleration_mps2, vehicles);
     fill(record.held.coupler_force_n, vehicles + 1);

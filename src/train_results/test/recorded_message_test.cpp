@@ -52,8 +52,7 @@ void ExpectEveryByteCounts(const Message& message) {
     Bytes wrong = right;
     wrong[i] ^= 0x40u;  // of no number here does this make the same one, or -0 of 0
     EXPECT_EQ(Compare(wrong, message).empty(), i < 4) << "byte " << i;
-    EXPECT_FALSE(Compare(Bytes(right.begin(), right.begin() + static_cast<long>(i)), message).empty())
-        << i << " bytes";
+    EXPECT_FALSE(Compare(Bytes(right.begin(), right.begin() + static_cast<long>(i)), message).empty()) << i << " bytes";
   }
   Bytes longer = right;
   longer.push_back(0);
@@ -89,8 +88,7 @@ TEST(RecordedMessage, DifferencesNameWhoAndWhat) {
   const std::vector<Difference> of_wagon = Compare(BytesOf(wagon), Wagon());
   ASSERT_EQ(of_wagon.size(), 2u);
   EXPECT_EQ(of_wagon[0].text, "vehicle 12, wheelset 4: body_pitch_radps is -1 in the bag, 0 now");
-  EXPECT_EQ(of_wagon[1].text,
-            "vehicle 12, rear bogie, rear half: nest_compression_m is 0.5 in the bag, 0 now");
+  EXPECT_EQ(of_wagon[1].text, "vehicle 12, rear bogie, rear half: nest_compression_m is 0.5 in the bag, 0 now");
 }
 
 TEST(RecordedMessage, ZerosOfBothSignsDiffer) {

@@ -59,9 +59,8 @@ TEST(RecorderThread, RecordsEverythingInOrder) {
     EXPECT_EQ(number, record.mean_speed_mps);
     EXPECT_EQ((std::vector<double>{number, number + 1.0, number + 2.0}), record.vehicles.position_m);
     EXPECT_EQ(number, record.vehicles.details.at(0).position.z[0]);
-    for (const auto* values :
-         {&record.acceleration_mps2, &record.held.coupler_force_n, &record.coupler_extension_m,
-          &record.cylinder_pressure_pa, &record.held.cylinder_pressure_pa}) {
+    for (const auto* values : {&record.acceleration_mps2, &record.held.coupler_force_n, &record.coupler_extension_m,
+                               &record.cylinder_pressure_pa, &record.held.cylinder_pressure_pa}) {
       EXPECT_EQ((std::vector<double>{number, -number, 0.0, 7.0}), *values);
     }
     EXPECT_EQ(record.exchange, record.state_digest);

@@ -32,8 +32,7 @@ struct ShortRun {
   static train_dynamics::config::LoadedScenario Load(const std::vector<std::string>& more) {
     std::vector<std::string> settings{
         "model=ltd", "duration_s=3", "detail_vehicles=[]",
-        "train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 3}]}",
-        "brake=single_vehicle"};
+        "train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 3}]}", "brake=single_vehicle"};
     settings.insert(settings.end(), more.begin(), more.end());
     return train_dynamics::config::LoadScenario(TRAIN_BRAKE_CONFIG_DIR "/scenarios/emergency.yaml", settings);
   }
@@ -56,8 +55,7 @@ TEST(SummaryJson, NumbersReadBackToTheSameBits) {
   for (const auto& [element, energy_j] : run.summary.ledger().dissipated_j)
     EXPECT_EQ(read["energy"]["dissipated_j"][element].get<double>(), energy_j) << element;
   double tension_n = 0.0;
-  for (const auto& of : run.master.in_train_forces().Extremes())
-    tension_n = std::max(tension_n, of.tension_n);
+  for (const auto& of : run.master.in_train_forces().Extremes()) tension_n = std::max(tension_n, of.tension_n);
   EXPECT_EQ(read["max_tension_n"]["value"].get<double>(), tension_n);
   EXPECT_EQ(std::stoull(read["state_digest"].get<std::string>(), nullptr, 16), run.summary.state_digest());
 }
@@ -65,8 +63,7 @@ TEST(SummaryJson, NumbersReadBackToTheSameBits) {
 TEST(SummaryJson, WhatDoesNotExistIsNull) {
   const ShortRun run;
   const json read = json::parse(SummaryJson(run.summary, run.master, 1.0, ""));
-  for (const char* const key :
-       {"fault", "resumed_at_s", "stop_time_s", "stop_distance_m", "left_route_s", "twin"})
+  for (const char* const key : {"fault", "resumed_at_s", "stop_time_s", "stop_distance_m", "left_route_s", "twin"})
     EXPECT_TRUE(read.at(key).is_null()) << key;
   EXPECT_FALSE(read["stopped"].get<bool>());
   EXPECT_TRUE(read["complete"].get<bool>());

@@ -36,10 +36,9 @@ std::string Text(const json& summary) { return SummaryText(summary.dump()); }
 
 TEST(SummaryText, MovingTrain) {
   const std::string text = Text(Moving());
-  EXPECT_PRED_FORMAT2(
-      testing::IsSubstring,
-      "mine: 3 vehicles, ltd model, ends after 60.0 s and 1234.6 m at 7.2 km/h\n  (duration_s is over;",
-      text);
+  EXPECT_PRED_FORMAT2(testing::IsSubstring,
+                      "mine: 3 vehicles, ltd model, ends after 60.0 s and 1234.6 m at 7.2 km/h\n  (duration_s is over;",
+                      text);
   EXPECT_PRED_FORMAT2(testing::IsSubstring,
                       "largest tension 123 kN in connection 1 at 3.2 s, "
                       "largest compression 65 kN in connection 2 at 4.5 s\n",
@@ -50,8 +49,7 @@ TEST(SummaryText, MovingTrain) {
 
 TEST(SummaryText, StandingTrain) {
   json summary = Moving();
-  summary.update(
-      {{"stopped", true}, {"ended_by", "until"}, {"stop_time_s", 58.5}, {"stop_distance_m", 987.6}});
+  summary.update({{"stopped", true}, {"ended_by", "until"}, {"stop_time_s", 58.5}, {"stop_distance_m", 987.6}});
   const std::string text = Text(summary);
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "stands after 58.5 s and 987.6 m\n", text);
   EXPECT_PRED_FORMAT2(testing::IsNotSubstring, "duration_s", text);
@@ -72,8 +70,7 @@ TEST(SummaryText, TellsWhatShouldNotHappen) {
   for (const char* line :
        {"mine: 1 vehicle, ", "  the train parted: connection 7 at 8.0 s, connection 9 at 9.0 s\n",
         "  it rolled back, at the end by 2.5 m\n", "  it left its route at 12.0 s\n",
-        "  2 wheelsets slid, 5 slides in all, with a risk of a flat on 1\n",
-        "  INCOMPLETE: vehicle 1: burst\n"}) {
+        "  2 wheelsets slid, 5 slides in all, with a risk of a flat on 1\n", "  INCOMPLETE: vehicle 1: burst\n"}) {
     EXPECT_PRED_FORMAT2(testing::IsSubstring, line, text);
   }
   EXPECT_PRED_FORMAT2(testing::IsNotSubstring, "duration_s", text);
@@ -87,8 +84,8 @@ TEST(SummaryText, TellsHowFarATwinWent) {
                      {"max_tension_spread_n", 3.0},
                      {"max_compression_spread_n", 40.0},
                      {"distance_spread_m", 0.5}};
-  EXPECT_PRED_FORMAT2(testing::IsSubstring,
-                      "a start 1e-09 km/h faster changes the largest forces by up to 40 N", Text(summary));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "a start 1e-09 km/h faster changes the largest forces by up to 40 N",
+                      Text(summary));
 }
 
 TEST(SummaryText, LeavesOutWhatIsNotThere) {

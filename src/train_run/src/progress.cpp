@@ -37,9 +37,9 @@ void Progress::Show(double simulated_s, double mean_speed_mps) {
 void Progress::Print(double simulated_s, double mean_speed_mps, double wall_s) {
   const double factor = (simulated_s - start_s_) / wall_s;
   const double left_s = std::max(0.0, (duration_s_ - simulated_s) / factor);
-  train_console::WriteMessage(fmt::format(
-      "{}{:7.2f} of {:g} s   {:6.2f} km/h   {:6.1f} x real time   {:5.1f} s left{}", on_terminal_ ? "\r" : "",
-      simulated_s, duration_s_, 3.6 * mean_speed_mps + 0.0, factor, left_s, on_terminal_ ? "\x1b[K" : "\n"));
+  train_console::WriteMessage(fmt::format("{}{:7.2f} of {:g} s   {:6.2f} km/h   {:6.1f} x real time   {:5.1f} s left{}",
+                                          on_terminal_ ? "\r" : "", simulated_s, duration_s_,
+                                          3.6 * mean_speed_mps + 0.0, factor, left_s, on_terminal_ ? "\x1b[K" : "\n"));
   line_open_ = on_terminal_;
 }
 

@@ -92,8 +92,7 @@ void TrainRun::LeaveCheckpoint(const RunHooks& hooks, std::chrono::duration<doub
 }
 
 std::string TrainRun::Finish(double wall_s, const std::string& fault) {
-  const std::string json =
-      train_results::SummaryJson(summary_, master_, wall_s, fault.empty() ? fault_ : fault);
+  const std::string json = train_results::SummaryJson(summary_, master_, wall_s, fault.empty() ? fault_ : fault);
   if (output_ == nullptr) return json;
   try {
     output_->Finish(master_, summary_, json);

@@ -95,12 +95,11 @@ TEST_F(TrainRunTest, InterruptedGoesOnToARecordAndResumedToTheSameBits) {
   EXPECT_EQ(left.checkpoint.exchange, 6 * per_record);
   train_results::RunOutput output(Options(), left);
   train_dynamics::InProcessTransport again(scenario.params, scenario.consist, 1);
-  TrainRun resumed(left.scenario.params, left.scenario.consist, again, left.scenario.pressures,
-                   &left.checkpoint, &output);
+  TrainRun resumed(left.scenario.params, left.scenario.consist, again, left.scenario.pressures, &left.checkpoint,
+                   &output);
   double travelled_m = 0.0;
-  resumed.AddObserver([&](const TrainRecord& record) {
-    travelled_m = record.mean_position_m - record.at_time_zero.mean_position_m;
-  });
+  resumed.AddObserver(
+      [&](const TrainRecord& record) { travelled_m = record.mean_position_m - record.at_time_zero.mean_position_m; });
   resumed.Go({});
   resumed.Finish(1.0);
   EXPECT_EQ(resumed.exit_code(), kSuccess);

@@ -27,8 +27,7 @@ LoadedScenario LoadWithPneumaticBrake(const std::string& file, const std::vector
   LoadedScenario loaded = train_dynamics::config::LoadScenario(file, overrides);
   const ScenarioParams& params = loaded.params;
   if (!params.pressure_table.empty() || !params.brake || params.brake->kind != BrakeSystemKind::kPneumatic)
-    throw std::invalid_argument(
-        file + ": brake.kind must be pneumatic for this command; try --set brake=ab_head_end");
+    throw std::invalid_argument(file + ": brake.kind must be pneumatic for this command; try --set brake=ab_head_end");
   return loaded;
 }
 
@@ -39,9 +38,8 @@ std::vector<double> Lengths(const Consist& consist) {
 }
 
 /// Random service commands at several cell counts: a line of the table for each, and what led to an emergency.
-void Search(const train_dynamics::PneumaticBrakeParams& brake, const std::vector<double>& length_m,
-            int trials, std::uint32_t seed, std::vector<train_dynamics::AirTestResult>& results,
-            std::string& undesired) {
+void Search(const train_dynamics::PneumaticBrakeParams& brake, const std::vector<double>& length_m, int trials,
+            std::uint32_t seed, std::vector<train_dynamics::AirTestResult>& results, std::string& undesired) {
   for (const int cells : {1, 2, 4, 8}) {
     train_dynamics::EmergencySearch search;
     search.trials = trials;
@@ -49,12 +47,10 @@ void Search(const train_dynamics::PneumaticBrakeParams& brake, const std::vector
     search.cells_per_vehicle = cells;
     const auto found = train_dynamics::FindUndesiredEmergencies(brake, length_m, search);
     results.push_back({fmt::format("random service commands, {} cell(s): emergencies", cells),
-                       static_cast<double>(found.size()), fmt::format("of {}", trials), "none [A]",
-                       found.empty()});
+                       static_cast<double>(found.size()), fmt::format("of {}", trials), "none [A]", found.empty()});
     for (const train_dynamics::UndesiredEmergency& e : found) {
-      undesired +=
-          fmt::format("\n{} cell(s), trial {}: vehicle {} at {:.2f} s, pipe at first {:.1f} kPa, after",
-                      cells, e.trial, e.vehicle, e.time_s, e.initial_pressure_kpa);
+      undesired += fmt::format("\n{} cell(s), trial {}: vehicle {} at {:.2f} s, pipe at first {:.1f} kPa, after", cells,
+                               e.trial, e.vehicle, e.time_s, e.initial_pressure_kpa);
       for (const train_dynamics::BrakeCommand& c : e.commands) {
         undesired += c.kind == train_dynamics::BrakeCommandKind::kApply
                          ? fmt::format(" {:.3f} s: {:.3f} kPa,", c.time_s, c.reduction_kpa)
@@ -123,8 +119,8 @@ int PrintAirTest(const std::string& scenario_file, const std::vector<std::string
   auto results = train_dynamics::TestAirBrake(loaded.params.brake->pneumatic, length_m);
   std::string undesired;
   if (trials > 0) Search(loaded.params.brake->pneumatic, length_m, trials, seed, results, undesired);
-  train_console::Print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n",
-                       loaded.params.brake->name, length_m.size(), "test", "value", "", "rule", "");
+  train_console::Print("{}: air brake of {} vehicles\n\n{:<52} {:>9} {:<8} {:<46} {}\n", loaded.params.brake->name,
+                       length_m.size(), "test", "value", "", "rule", "");
   int failed = 0;
   for (const train_dynamics::AirTestResult& r : results) {
     train_console::Print("{:<52} {:>9} {:<8} {:<46} {}\n", r.test,
@@ -146,8 +142,7 @@ int PrintBrakeWeight(const std::string& scenario_file, const std::vector<std::st
   for (const double speed_kmh : {120.0, 100.0}) {
     const double stop_m = StoppingDistance(alone, speed_kmh);
     lambda = train_dynamics::BrakedWeightPercentage(speed_kmh, stop_m);
-    train_console::Print("  from {:g} km/h: {:.1f} m, braked weight {:.1f} % (UIC 544-1)\n", speed_kmh,
-                         stop_m, lambda);
+    train_console::Print("  from {:g} km/h: {:.1f} m, braked weight {:.1f} % (UIC 544-1)\n", speed_kmh, stop_m, lambda);
   }
   double train_m = 0.0;
   for (const double length_m : Lengths(loaded.consist)) train_m += length_m;

@@ -53,12 +53,12 @@ std::string ConnectionLimits(const LoadedScenario& scenario) {
   std::vector<std::string> limits;
   for (const int type : scenario.consist.connection_type) {
     const ConnectionParams& connection = scenario.consist.connection_types[type];
-    const bool depends_on_force = std::visit(
-        [](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce).depends_on_force; },
-        connection.Law());
+    const bool depends_on_force =
+        std::visit([](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce).depends_on_force; },
+                   connection.Law());
     const std::string limit =
-        fmt::format("{} stable to {:.3g} ms{}", connection.name,
-                    kMs * LongestStableExchange(connection, head_kg), depends_on_force ? " at 900 kN" : "");
+        fmt::format("{} stable to {:.3g} ms{}", connection.name, kMs * LongestStableExchange(connection, head_kg),
+                    depends_on_force ? " at 900 kN" : "");
     if (std::find(limits.begin(), limits.end(), limit) == limits.end()) limits.push_back(limit);
   }
   return fmt::format("{}", fmt::join(limits, ", "));
@@ -85,16 +85,14 @@ void PrintScenario(const LoadedScenario& scenario) {
     mass += consist.vehicle(i).TotalMass();
     length += consist.vehicle(i).length_m;
   }
-  const auto draw_bars =
-      std::count_if(consist.connection_type.begin(), consist.connection_type.end(), [&](int type) {
-        return consist.connection_types[type].kind == train_dynamics::ConnectionKind::kDrawBar;
-      });
+  const auto draw_bars = std::count_if(consist.connection_type.begin(), consist.connection_type.end(), [&](int type) {
+    return consist.connection_types[type].kind == train_dynamics::ConnectionKind::kDrawBar;
+  });
   const double steps = static_cast<double>(p.Exchanges()) * p.StepsPerExchange();
   train_console::Print("{}{}{}\n", p.name, p.description.empty() ? "" : ": ", p.description);
   Line("model", "{}", p.ModelNames());
-  Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name,
-       consist.vehicles(), 1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars,
-       draw_bars);
+  Line("train", "{}: {} vehicle(s), {:.0f} t, {:.1f} m; {} couplers, {} draw-bars", p.train.name, consist.vehicles(),
+       1e-3 * mass, length, static_cast<long>(consist.connection_type.size()) - draw_bars, draw_bars);
   for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(p.train))
     Line("external", "{}, moved by the node {}", VehiclesText(rank), rank.name);
   Line("track", "{}", TrackText(p.track));
@@ -103,8 +101,8 @@ void PrintScenario(const LoadedScenario& scenario) {
   } else {
     Line("pressures", "{}", p.pressure_table);
   }
-  Line("run", "{:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} s",
-       p.duration_s, 3.6 * p.MeanInitialSpeed(), steps, p.dt_s, p.exchange_interval_s, p.record_interval_s);
+  Line("run", "{:g} s from {:g} km/h, {:g} steps of {:g} s, exchange every {:g} s, record every {:g} s", p.duration_s,
+       3.6 * p.MeanInitialSpeed(), steps, p.dt_s, p.exchange_interval_s, p.record_interval_s);
 }
 
 void PrintStability(const LoadedScenario& scenario) {
@@ -115,8 +113,8 @@ void PrintStability(const LoadedScenario& scenario) {
   if (scenario.consist.connection_type.empty()) return;
   // docs/validation.md: changes of the largest coupler forces against exchanges of 1 ms, as long as they are stable.
   constexpr double kErrorPerS = 1.3e6;  // [N/s]
-  Line("exchange", "{:g} ms; {}; it changes the paper's coupler forces by up to {:.2g} kN",
-       kMs * p.exchange_interval_s, ConnectionLimits(scenario), 1e-3 * kErrorPerS * p.exchange_interval_s);
+  Line("exchange", "{:g} ms; {}; it changes the paper's coupler forces by up to {:.2g} kN", kMs * p.exchange_interval_s,
+       ConnectionLimits(scenario), 1e-3 * kErrorPerS * p.exchange_interval_s);
 }
 
 void WarnOfRun(const CheckOptions& options, const RunPrediction& run, std::vector<std::string>& warnings) {
@@ -148,12 +146,11 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
   const int per_machine = (options.nodes + options.machines - 1) / options.machines,
             cores = train_dynamics::UsableCores();
   if (per_machine > cores) {
-    constexpr double kCoreTime =
-        90e-6;  // [s] of a node's exchange: 10.9 ms for 242 on two cores (docs/lockstep.md)
-    warn(fmt::format(
-        "{} nodes share {} cores, so that an exchange takes about {:.2g} ms; {} nodes are fastest, or more "
-        "machines",
-        per_machine, cores, kMs * kCoreTime * per_machine / cores, cores * options.machines));
+    constexpr double kCoreTime = 90e-6;  // [s] of a node's exchange: 10.9 ms for 242 on two cores (docs/lockstep.md)
+    warn(
+        fmt::format("{} nodes share {} cores, so that an exchange takes about {:.2g} ms; {} nodes are fastest, or more "
+                    "machines",
+                    per_machine, cores, kMs * kCoreTime * per_machine / cores, cores * options.machines));
   }
   constexpr double kNodeMemory = 1.2e6;  // private, docs/lockstep.md
   if (kNodeMemory * per_machine > FreeMemory()) {
@@ -167,9 +164,8 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
   };
   constexpr double kFilesPerNode = 2.0, kOtherFiles = 256.0, kThreadsPerNode = 5.0;
   if (exceeds(RLIMIT_NOFILE, kFilesPerNode * options.nodes + kOtherFiles)) {
-    warn(fmt::format(
-        "the master needs {:g} open files, more than `ulimit -Hn`; raise that or take fewer nodes",
-        kFilesPerNode * options.nodes + kOtherFiles));
+    warn(fmt::format("the master needs {:g} open files, more than `ulimit -Hn`; raise that or take fewer nodes",
+                     kFilesPerNode * options.nodes + kOtherFiles));
   }
   if (exceeds(RLIMIT_NPROC, kThreadsPerNode * per_machine)) {
     warn(fmt::format("{:g} threads on a machine are more than `ulimit -Hu`; raise that or take fewer nodes",
@@ -182,8 +178,7 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
 namespace {
 
 /// What programs ask of a scenario; units stand in the names.
-std::string Json(const LoadedScenario& scenario, const RunPrediction& run,
-                 const std::vector<std::string>& warnings) {
+std::string Json(const LoadedScenario& scenario, const RunPrediction& run, const std::vector<std::string>& warnings) {
   const ScenarioParams& p = scenario.params;
   double mass_kg = 0.0, length_m = 0.0;
   for (int i = 0; i < scenario.consist.vehicles(); ++i) {
@@ -192,8 +187,7 @@ std::string Json(const LoadedScenario& scenario, const RunPrediction& run,
   }
   nlohmann::ordered_json external = nlohmann::ordered_json::array(), connections = external;
   for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(p.train)) {
-    const train_dynamics::VehicleParams& vehicle =
-        scenario.consist.vehicle(rank.first);  // all of a group are equal
+    const train_dynamics::VehicleParams& vehicle = scenario.consist.vehicle(rank.first);  // all of a group are equal
     external.push_back({{"node", rank.name},
                         {"first_vehicle", rank.first + 1},
                         {"vehicles", rank.count},
@@ -203,8 +197,8 @@ std::string Json(const LoadedScenario& scenario, const RunPrediction& run,
                         {"speed_mps", p.InitialSpeedOfGroup(scenario.consist.vehicle_type[rank.first])}});
   }
   for (const ConnectionParams& connection : scenario.consist.connection_types) {
-    const train_dynamics::ConnectionTangent tangent = std::visit(
-        [](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce); }, connection.Law());
+    const train_dynamics::ConnectionTangent tangent =
+        std::visit([](const auto& law) { return law.TangentAt(train_dynamics::kLargeCouplerForce); }, connection.Law());
     connections.push_back({{"name", connection.name},
                            {"stiffness_n_per_m", tangent.stiffness_n_per_m},
                            {"damping_ns_per_m", tangent.damping_ns_per_m}});
@@ -264,15 +258,13 @@ int CheckScenario(const CheckOptions& options) {
   Line("wall time", "about {} s with {} thread(s), {} x real time", TwoDigits(run.wall_s), threads,
        TwoDigits(params.duration_s / run.wall_s));
   Line("memory", "about {:.0f} MB", kMega * run.memory_bytes);
-  Line("bag", "{:.1f} MB, {:.2f} MB per second", kMega * run.bag_bytes,
-       kMega * run.bag_bytes / params.duration_s);
+  Line("bag", "{:.1f} MB, {:.2f} MB per second", kMega * run.bag_bytes, kMega * run.bag_bytes / params.duration_s);
   if (options.nodes > 0 && !params.Uses(VehicleModel::kTwoD)) {
-    warnings.push_back(fmt::format("--nodes {}: the {} model runs in the master; leave it out", options.nodes,
-                                   params.ModelNames()));
+    warnings.push_back(
+        fmt::format("--nodes {}: the {} model runs in the master; leave it out", options.nodes, params.ModelNames()));
   } else if (options.nodes > 0) {
     WarnOfNodes(options, scenario.consist.vehicles(), warnings);
-    const TrafficPrediction traffic =
-        PredictTraffic(scenario, std::min(options.nodes, scenario.consist.vehicles()));
+    const TrafficPrediction traffic = PredictTraffic(scenario, std::min(options.nodes, scenario.consist.vehicles()));
     const double share = 1.0 / options.machines;
     Line("messages",
          "{:.0f} requests and as many replies per simulated second and machine, {:.1f} MB there, {:.1f} MB "

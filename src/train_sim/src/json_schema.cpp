@@ -80,8 +80,7 @@ Json TypeOf(const KeyDescription& key, Extent extent) {
     case Kind::kParts:
       return {{"anyOf",
                {{{"type", "string"}, {"pattern", "\\.csv$"}},
-                {{"type", "array"},
-                 {"items", {{"anyOf", {{{"type", "string"}}, {{"$ref", FileOf(key.folder)}}}}}}}}}};
+                {{"type", "array"}, {"items", {{"anyOf", {{{"type", "string"}}, {{"$ref", FileOf(key.folder)}}}}}}}}}};
   }
   return {};
 }
@@ -123,8 +122,7 @@ Json Fails(const KeyCondition& condition, const std::vector<KeyDescription>& key
     value = {{"maximum", std::stod(first.substr(2))}};
   } else {
     value = {{"not", {{"enum", Words(condition.values)}}}};
-    for (const std::string& word : condition.values)
-      default_holds = default_holds || word == selector.default_value;
+    for (const std::string& word : condition.values) default_holds = default_holds || word == selector.default_value;
   }
   Json given = IsGiven(condition.key);
   given["properties"] = {{condition.key, std::move(value)}};
@@ -135,8 +133,7 @@ Json Fails(const KeyCondition& condition, const std::vector<KeyDescription>& key
 Json MapSchema(const std::vector<KeyDescription>& keys, Extent extent, bool may_have_base) {
   Json properties = Json::object(), required = Json::array(), rules = Json::array();
   if (may_have_base) {
-    properties["base"] = {{"type", "string"},
-                          {"description", "the part that this one starts from: a name, or a file"}};
+    properties["base"] = {{"type", "string"}, {"description", "the part that this one starts from: a name, or a file"}};
   }
   for (const KeyDescription& key : keys) {
     const auto is_same_key = [&key](const KeyDescription& other) { return other.key == key.key; };
@@ -162,8 +159,7 @@ Json MapSchema(const std::vector<KeyDescription>& keys, Extent extent, bool may_
     const bool may_be_missing = key.may_be_left_out && key.required_with.empty();
     if (may_be_missing || extent == Extent::kChange) continue;
     Json not_required = unknown;
-    for (const KeyCondition& condition : key.required_with)
-      not_required.push_back(Fails(condition, keys, extent));
+    for (const KeyCondition& condition : key.required_with) not_required.push_back(Fails(condition, keys, extent));
     if (not_required.empty()) {
       required.push_back(key.key);
     } else {

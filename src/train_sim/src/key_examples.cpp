@@ -105,7 +105,8 @@ class Collector {
       if (const NodePtr root = library.Open(file, "")) TakeMap(*root, kind.keys, kind.name);
       return;
     }
-    // A table is a list of a kind, as `points` of a track or `consist` of a train: of the one whose keys are its columns.
+    // A table is a list of a kind, as `points` of a track or `consist` of a train: of the one whose keys are its
+    // columns.
     const fs::path whole = fs::absolute(file);
     const auto document = std::make_shared<const strict_config::Document>(
         strict_config::Document{file_, whole.parent_path(), whole.parent_path()});
@@ -146,8 +147,8 @@ class Collector {
  private:
   void TakeMap(const Node& map, const std::vector<KeyDescription>& keys, const std::string& path) {
     for (const strict_config::Entry& entry : map.entries) {
-      const auto key = std::find_if(keys.begin(), keys.end(),
-                                    [&entry](const KeyDescription& k) { return k.key == entry.key; });
+      const auto key =
+          std::find_if(keys.begin(), keys.end(), [&entry](const KeyDescription& k) { return k.key == entry.key; });
       if (key == keys.end()) continue;
       const std::string below = path + "." + key->key;
       if (const std::optional<std::string> text = Inline(*entry.value); text && text->size() <= kLongest)
@@ -178,8 +179,7 @@ std::vector<fs::path> FilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".yaml" || entry.path().extension() == ".csv")
-      files.push_back(entry.path());
+    if (entry.path().extension() == ".yaml" || entry.path().extension() == ".csv") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -169,8 +169,7 @@ class Reference {
     }
     const std::string nearest =
         strict_config::Nearest(path.substr(path.find_last_of('.') + 1), near.empty() ? all : near);
-    throw std::invalid_argument(path + " names no key; " +
-                                (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
+    throw std::invalid_argument(path + " names no key; " + (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
                                 "kinds of files: " + Joined(roots, ", "));
   }
 
@@ -202,7 +201,8 @@ class Reference {
     return whole == above || whole.rfind(above + ".", 0) == 0;
   }
 
-  /// Of "train.connection.draft_gear.slack_m" or "scenario.train.connection...": what is behind the last part on the way.
+  /// Of "train.connection.draft_gear.slack_m" or "scenario.train.connection...": what is behind the last part on the
+  /// way.
   std::vector<Line> FindThroughParts(const std::string& path) const {
     for (const std::string& start : {std::string(), std::string("scenario.")}) {
       std::string rest = start + path;
@@ -213,9 +213,8 @@ class Reference {
           for (const Line& line : LinesOf(kind)) {
             const std::string whole = WithoutIndices(line.path);
             if (!line.key->IsPart() || !(rest == whole || rest.rfind(whole + ".", 0) == 0)) continue;
-            const auto part = std::find_if(kinds_.begin(), kinds_.end(), [&line](const FileKind& k) {
-              return k.folder == line.key->folder;
-            });
+            const auto part = std::find_if(kinds_.begin(), kinds_.end(),
+                                           [&line](const FileKind& k) { return k.folder == line.key->folder; });
             if (rest == whole) return LinesOf(*part);
             rest = part->name + rest.substr(whole.size());
             moved = true;
@@ -280,9 +279,8 @@ void PrintMarkdown(const Reference& reference) {
       const KeyDescription& key = *line.key;
       const std::string given = Default(key);
       const std::string condition = key.known_with.empty() ? "" : "With " + Conditions(key.known_with) + ": ";
-      train_console::Print("| `{}` | {} | {} | {} | {}{} | {} |\n", line.path.substr(kind.name.size() + 1),
-                           Unit(key), Cell(Rule(key)),
-                           given.rfind("must", 0) == 0 ? Cell(given) : Code(Cell(given)), condition,
+      train_console::Print("| `{}` | {} | {} | {} | {}{} | {} |\n", line.path.substr(kind.name.size() + 1), Unit(key),
+                           Cell(Rule(key)), given.rfind("must", 0) == 0 ? Cell(given) : Code(Cell(given)), condition,
                            Cell(key.meaning), Cell(reference.Example(line)));
     }
   }
@@ -298,8 +296,7 @@ void PrintMarkdown(const Reference& reference) {
       "`points`.\n\n"
       "{}\n\n| column | meaning |\n|---|---|\n",
       kPressureTable);
-  for (const CsvColumn& column : kPressureColumns)
-    train_console::Print("| `{}` | {} |\n", column.name, column.meaning);
+  for (const CsvColumn& column : kPressureColumns) train_console::Print("| `{}` | {} |\n", column.name, column.meaning);
 }
 
 }  // namespace
@@ -310,8 +307,7 @@ int PrintKeys(const KeysOptions& options) {
     return train_run::kSuccess;
   }
   if (options.kinds) {
-    for (const FileKind& kind : train_dynamics::config::ConfigurationKeys())
-      train_console::Print("{}\n", kind.name);
+    for (const FileKind& kind : train_dynamics::config::ConfigurationKeys()) train_console::Print("{}\n", kind.name);
     return train_run::kSuccess;
   }
   if (!options.schema_kind.empty()) {
@@ -323,8 +319,7 @@ int PrintKeys(const KeysOptions& options) {
       train_console::WriteOutput(JsonSchema(kind));
       return train_run::kSuccess;
     }
-    throw std::invalid_argument("--json-schema must be one of " + Joined(names, ", ") + ", got " +
-                                options.schema_kind);
+    throw std::invalid_argument("--json-schema must be one of " + Joined(names, ", ") + ", got " + options.schema_kind);
   }
   const Reference reference;
   if (options.markdown) {
@@ -335,13 +330,12 @@ int PrintKeys(const KeysOptions& options) {
     reference.PrintText(lines);
   } else {
     for (const FileKind& kind : reference.kinds()) {
-      train_console::Print("{}{}: {} (files in {}/)\n", &kind == &reference.kinds().front() ? "" : "\n",
-                           kind.name, kind.meaning, kind.folder);
+      train_console::Print("{}{}: {} (files in {}/)\n", &kind == &reference.kinds().front() ? "" : "\n", kind.name,
+                           kind.meaning, kind.folder);
       reference.PrintText(LinesOf(kind));
     }
     train_console::Print("\npressure table (CSV)\n    {}\n", kPressureTable);
-    for (const CsvColumn& column : kPressureColumns)
-      train_console::Print("{}\n    {}\n", column.name, column.meaning);
+    for (const CsvColumn& column : kPressureColumns) train_console::Print("{}\n    {}\n", column.name, column.meaning);
   }
   return train_run::kSuccess;
 }

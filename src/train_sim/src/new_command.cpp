@@ -81,8 +81,7 @@ std::string Modeline(const char* schema) {
   for (const fs::path& root : train_dynamics::config::PartFolders()) {
     std::error_code error;
     const fs::path file = fs::absolute(root / "schema" / (std::string(schema) + ".schema.json"), error);
-    if (fs::exists(file, error))
-      return "# yaml-language-server: $schema=" + file.lexically_normal().string() + "\n";
+    if (fs::exists(file, error)) return "# yaml-language-server: $schema=" + file.lexically_normal().string() + "\n";
   }
   return "";
 }

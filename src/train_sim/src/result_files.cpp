@@ -14,9 +14,7 @@ std::string Names(const std::vector<ResultColumn>& columns, std::size_t first, s
   const std::string& name = columns[first].name;
   const std::size_t place = name.find("{}");
   if (place != std::string::npos) {
-    const auto number = [&](const char* text) {
-      return "`" + std::string(name).replace(place, 2, text) + "`";
-    };
+    const auto number = [&](const char* text) { return "`" + std::string(name).replace(place, 2, text) + "`"; };
     return number("1") + ", " + number("2") + ", ...";
   }
   std::string names;

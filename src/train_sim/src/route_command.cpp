@@ -66,10 +66,9 @@ void PrintGrades(const TrackParams& route, const Stretch& extent) {
     const double up = tread.value * (tread.to_m - tread.from_m);
     (up > 0.0 ? climbed : descended) += std::abs(up);
   }
-  Line("grades",
-       "{} stretches, {:+.3g} ‰ (from {}) to {:+.3g} ‰ (from {}); up {:.1f} m, down {:.1f} m in all",
-       treads.size(), kPerMille * fall->value, Km(fall->from_m), kPerMille * rise->value, Km(rise->from_m),
-       climbed, descended);
+  Line("grades", "{} stretches, {:+.3g} ‰ (from {}) to {:+.3g} ‰ (from {}); up {:.1f} m, down {:.1f} m in all",
+       treads.size(), kPerMille * fall->value, Km(fall->from_m), kPerMille * rise->value, Km(rise->from_m), climbed,
+       descended);
 }
 
 void PrintCurves(const TrackParams& route, const Stretch& extent) {
@@ -85,8 +84,7 @@ void PrintCurves(const TrackParams& route, const Stretch& extent) {
   const auto tightest = std::max_element(curves.begin(), curves.end(), [](const Tread& a, const Tread& b) {
     return std::abs(a.value) < std::abs(b.value);
   });
-  Line("curves",
-       "{}, {:.3f} km of them, {:.0f} degrees in all; the tightest has {:.0f} m radius to the {} (from {})",
+  Line("curves", "{}, {:.3f} km of them, {:.0f} degrees in all; the tightest has {:.0f} m radius to the {} (from {})",
        curves.size(), kKmPerM * length_m, kDegrees * angle, 1.0 / std::abs(tightest->value),
        tightest->value > 0.0 ? "right" : "left", Km(tightest->from_m));
 }
@@ -94,12 +92,12 @@ void PrintCurves(const TrackParams& route, const Stretch& extent) {
 void PrintLimits(const TrackParams& route, const Stretch& extent) {
   const std::vector<Tread> treads = TreadsOf(route.SpeedLimits(), extent);
   if (treads.empty()) return Line("limits", "none");
-  const auto [low, high] = std::minmax_element(
-      treads.begin(), treads.end(), [](const Tread& a, const Tread& b) { return a.value < b.value; });
+  const auto [low, high] = std::minmax_element(treads.begin(), treads.end(),
+                                               [](const Tread& a, const Tread& b) { return a.value < b.value; });
   double time_s = 0.0;
   for (const Tread& tread : treads) time_s += (tread.to_m - tread.from_m) / tread.value;
-  Line("limits", "{} stretches, {:g} km/h (from {}) to {:g} km/h; at the limit all along: {:.1f} min",
-       treads.size(), kKmhPerMps * low->value, Km(low->from_m), kKmhPerMps * high->value, time_s / 60.0);
+  Line("limits", "{} stretches, {:g} km/h (from {}) to {:g} km/h; at the limit all along: {:.1f} min", treads.size(),
+       kKmhPerMps * low->value, Km(low->from_m), kKmhPerMps * high->value, time_s / 60.0);
 }
 
 std::vector<std::string> WarningsAbout(const TrackParams& route, const Stretch& extent) {
@@ -111,8 +109,7 @@ std::vector<std::string> WarningsAbout(const TrackParams& route, const Stretch& 
                                      kPerMille * grades[i].value, Km(grades[i].from_m)));
     if (i > 0 && std::abs(grades[i].value - grades[i - 1].value) > kLargestChange)
       warnings.push_back(fmt::format("the grade changes by {:+.3g} ‰ at {}, at one place",
-                                     kPerMille * (grades[i].value - grades[i - 1].value),
-                                     Km(grades[i].from_m)));
+                                     kPerMille * (grades[i].value - grades[i - 1].value), Km(grades[i].from_m)));
   }
   for (const Tread& curve : TreadsOf(route.Curvatures(), extent)) {
     if (std::abs(curve.value) > 1.0 / kTight)
@@ -121,8 +118,7 @@ std::vector<std::string> WarningsAbout(const TrackParams& route, const Stretch& 
   }
   for (const StationParams& station : route.Stations()) {
     if (station.position_m < extent.from_m || station.position_m > extent.to_m)
-      warnings.push_back(
-          fmt::format("{} at {} lies outside of the route", station.name, Km(station.position_m)));
+      warnings.push_back(fmt::format("{} at {} lies outside of the route", station.name, Km(station.position_m)));
   }
   return warnings;
 }
@@ -154,11 +150,10 @@ std::string Table(const TrackParams& route, const Stretch& extent) {
   std::string text =
       std::string("position_m,station,grade_permille,radius_m") + (has_limits ? ",speed_limit_kmh\n" : "\n");
   for (auto at = positions.lower_bound(extent.from_m); at != positions.end() && *at <= extent.to_m; ++at) {
-    const auto station = std::find_if(stations.begin(), stations.end(),
-                                      [&](const StationParams& s) { return s.position_m == *at; });
+    const auto station =
+        std::find_if(stations.begin(), stations.end(), [&](const StationParams& s) { return s.position_m == *at; });
     const double curvature = CurvatureAt(track, *at);
-    text += fmt::format("{},{},{:.9g},{:.9g}", *at,
-                        station == stations.end() ? "" : QuotedIfNeeded(station->name),
+    text += fmt::format("{},{},{:.9g},{:.9g}", *at, station == stations.end() ? "" : QuotedIfNeeded(station->name),
                         kPerMille * GradeAt(track, *at), curvature == 0.0 ? 0.0 : 1.0 / curvature);
     if (has_limits) text += fmt::format(",{:.9g}", kKmhPerMps * track.speed_limits().At(*at));
     text += "\n";
@@ -172,8 +167,7 @@ int ShowRoute(const RouteOptions& options) {
   const TrackParams route = train_dynamics::config::LoadTrack(options.file, options.overrides);
   const Stretch extent = DrawnExtent(route);
   train_console::Print("{}\n", route.name.empty() ? options.file : route.name);
-  Line("extent", "{} to {}, {:.3f} km{}", Km(extent.from_m), Km(extent.to_m),
-       kKmPerM * (extent.to_m - extent.from_m),
+  Line("extent", "{} to {}, {:.3f} km{}", Km(extent.from_m), Km(extent.to_m), kKmPerM * (extent.to_m - extent.from_m),
        std::isinf(route.Extent().to_m) ? " (of its entries; the route has no end)" : "");
   const RouteHeight height(route, extent.from_m);
   Line("height", "{:.1f} m at its begin, {:.1f} m at its end", height(extent.from_m), height(extent.to_m));
@@ -187,14 +181,12 @@ int ShowRoute(const RouteOptions& options) {
     std::string names;
     for (std::size_t i = 0; i < stations.size() && i < 12; ++i)
       names += fmt::format("{}{} at {}", i == 0 ? "" : ", ", stations[i].name, Km(stations[i].position_m));
-    Line("stations", "{}{}", names,
-         stations.size() > 12 ? fmt::format(" and {} more", stations.size() - 12) : "");
+    Line("stations", "{}{}", names, stations.size() > 12 ? fmt::format(" and {} more", stations.size() - 12) : "");
   }
   constexpr std::size_t kShown = 20;
   const std::vector<std::string> warnings = WarningsAbout(route, extent);
   std::fflush(stdout);
-  for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
-    train_console::Tell("warning: {}\n", warnings[i]);
+  for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i) train_console::Tell("warning: {}\n", warnings[i]);
   if (warnings.size() > kShown) train_console::Tell("and {} warnings more\n", warnings.size() - kShown);
   if (!options.plot.empty()) WriteFile(options.plot, DrawRoute(route));
   if (!options.csv.empty()) WriteFile(options.csv, Table(route, extent));

@@ -86,8 +86,7 @@ std::vector<Point> Thinned(const std::vector<Point>& line) {
   for (std::size_t begin = 0; begin < line.size(); begin += part) {
     const auto first = line.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = line.begin() + static_cast<std::ptrdiff_t>(std::min(begin + part, line.size()));
-    auto [low, high] =
-        std::minmax_element(first, last, [](const Point& a, const Point& b) { return a.y < b.y; });
+    auto [low, high] = std::minmax_element(first, last, [](const Point& a, const Point& b) { return a.y < b.y; });
     if (high < low) std::swap(low, high);
     for (const Point& point : {*first, *low, *high, *(last - 1)}) thin.push_back(point);
   }
@@ -105,17 +104,14 @@ class Sheet {
 
   void Text(double x, double y, const std::string& text, const char* anchor, const char* colour, int size,
             const char* more = "") {
-    body_ +=
-        fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}" fill="{}" font-size="{}"{}>{}</text>)", x,
-                    y, anchor, colour, size, more, Escaped(text)) +
-        "\n";
+    body_ += fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}" fill="{}" font-size="{}"{}>{}</text>)", x, y,
+                         anchor, colour, size, more, Escaped(text)) +
+             "\n";
   }
 
-  void Line(double x1, double y1, double x2, double y2, const char* colour, double width,
-            const char* more = "") {
-    body_ += fmt::format(
-                 R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"{}/>)",
-                 x1, y1, x2, y2, colour, width, more) +
+  void Line(double x1, double y1, double x2, double y2, const char* colour, double width, const char* more = "") {
+    body_ += fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"{}/>)",
+                         x1, y1, x2, y2, colour, width, more) +
              "\n";
   }
 
@@ -146,9 +142,7 @@ class Sheet {
     VerticalLines(bottom);
     std::string path;
     for (const Point& point : Thinned(line)) path += fmt::format("{:.2f},{:.2f} ", X(point.x), y(point.y));
-    body_ +=
-        fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", path, colour) +
-        "\n";
+    body_ += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", path, colour) + "\n";
     Text(kLeft, next_ - 7.0, title, "start", kInk, 13);
     next_ = bottom + kGap;
   }
@@ -171,19 +165,17 @@ class Sheet {
     for (const double tick : Ticks()) Text(X(tick), bottom + 17.0, Short(0.001 * tick), "middle", kInk, 12);
     Text(0.5 * (kLeft + kRight), bottom + 36.0, "position [km]", "middle", kInk, 13);
     Text(12.0, 20.0, title, "start", kInk, 15, R"( font-weight="bold")");
-    return fmt::format(
-        R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" )"
-        R"(height="{1:.0f}" font-family="DejaVu Sans, Verdana, Arial, sans-serif">)"
-        "\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{2}</svg>\n",
-        kRight + 40.0, bottom + 48.0, body_);
+    return fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" )"
+                       R"(height="{1:.0f}" font-family="DejaVu Sans, Verdana, Arial, sans-serif">)"
+                       "\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{2}</svg>\n",
+                       kRight + 40.0, bottom + 48.0, body_);
   }
 
  private:
   std::vector<double> Ticks() const {
     const double step = TickStep(shown_.to_m - shown_.from_m, 10);
     std::vector<double> ticks;
-    for (double tick = step * std::ceil(shown_.from_m / step - 1e-9); tick <= shown_.to_m + 1e-6 * step;
-         tick += step)
+    for (double tick = step * std::ceil(shown_.from_m / step - 1e-9); tick <= shown_.to_m + 1e-6 * step; tick += step)
       ticks.push_back(tick);
     return ticks;
   }
@@ -210,8 +202,7 @@ std::vector<StepValue> FrictionOf(const std::vector<FrictionPatchParams>& patche
     double friction = 0.0;
     for (const FrictionPatchParams& patch : patches) {
       if (end < patch.from_m || end >= patch.to_m) continue;
-      friction =
-          patch.friction_coefficient ? *patch.friction_coefficient : patch.adhesion->friction_coefficient;
+      friction = patch.friction_coefficient ? *patch.friction_coefficient : patch.adhesion->friction_coefficient;
     }
     steps.push_back({end, friction});
   }
@@ -244,8 +235,8 @@ Stretch DrawnExtent(const TrackParams& route) {
 
 RouteHeight::RouteHeight(const TrackParams& route, double begin_m) : grades_(route.Grades()) {
   for (std::size_t i = 0; i < grades_.size(); ++i) {
-    height_m_.push_back(
-        i == 0 ? 0.0 : height_m_.back() + grades_[i - 1].value * (grades_[i].from_m - grades_[i - 1].from_m));
+    height_m_.push_back(i == 0 ? 0.0
+                               : height_m_.back() + grades_[i - 1].value * (grades_[i].from_m - grades_[i - 1].from_m));
   }
   double known_m = 0.0, at_m = begin_m;
   if (!route.heights.empty()) {
@@ -284,8 +275,7 @@ std::string DrawRoute(const TrackParams& route) {
   if (!grades.empty()) sheet.Panel("grade [‰], uphill positive", Staircase(grades, shown, 1e3), kBlue, true);
   const std::vector<StepValue> curvatures = route.Curvatures();
   if (!curvatures.empty())
-    sheet.Panel("curvature [1/km], to the right positive", Staircase(curvatures, shown, 1e3), kVermillion,
-                true);
+    sheet.Panel("curvature [1/km], to the right positive", Staircase(curvatures, shown, 1e3), kVermillion, true);
   const std::vector<StepValue> limits = route.SpeedLimits();
   if (!limits.empty()) sheet.Panel("speed limit [km/h]", Staircase(limits, shown, 3.6), kGreen, true);
   const std::vector<FrictionPatchParams> patches = route.Patches();

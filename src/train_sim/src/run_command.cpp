@@ -92,12 +92,10 @@ void TellWhereResultsAre(const RunOptions& options) {
 }
 
 /// From time 0, or from a checkpoint, to the end.
-int Run(const LoadedScenario& scenario, const RunOptions& options,
-        const train_dynamics::TrainCheckpoint* checkpoint, train_results::RunOutput& output) {
-  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist,
-                                              Threads(options.threads, scenario));
-  train_run::TrainRun run(scenario.params, scenario.consist, vehicles, scenario.pressures, checkpoint,
-                          &output);
+int Run(const LoadedScenario& scenario, const RunOptions& options, const train_dynamics::TrainCheckpoint* checkpoint,
+        train_results::RunOutput& output) {
+  train_dynamics::InProcessTransport vehicles(scenario.params, scenario.consist, Threads(options.threads, scenario));
+  train_run::TrainRun run(scenario.params, scenario.consist, vehicles, scenario.pressures, checkpoint, &output);
   train_run::Progress progress(scenario.params.duration_s, run.start_s());
   run.AddObserver([&](const TrainRecord& record) { progress.Show(record.time_s, record.mean_speed_mps); });
   train_run::RunHooks hooks;
@@ -105,8 +103,7 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   run.Go(hooks);
   progress.Finish();
   if (options.twin && run.exit_code() == train_run::kSuccess) {
-    if (std::optional<train_dynamics::TwinRun> twin = RunTwin(scenario, options))
-      run.SetTwin(std::move(*twin));
+    if (std::optional<train_dynamics::TwinRun> twin = RunTwin(scenario, options)) run.SetTwin(std::move(*twin));
   }
   WarnOfResidual(run);
   const std::string json = run.Finish(progress.WallSeconds());
@@ -121,15 +118,13 @@ int Run(const LoadedScenario& scenario, const RunOptions& options,
   const double end_s = run.master().time_s();
   switch (run.exit_code()) {
     case train_run::kFailure:
-      train_console::Tell("train_sim: the results could not be written at {:.3f} s: {}\n", end_s,
-                          run.write_error());
+      train_console::Tell("train_sim: the results could not be written at {:.3f} s: {}\n", end_s, run.write_error());
       break;
     case train_run::kSimulationFault:
       train_console::Tell("train_sim: the simulation broke down: {}\n", run.fault());
       break;
     case train_run::kInterrupted:
-      train_console::Tell("train_sim: interrupted at {:.3f} s of {:g} s\n", end_s,
-                          scenario.params.duration_s);
+      train_console::Tell("train_sim: interrupted at {:.3f} s of {:g} s\n", end_s, scenario.params.duration_s);
       break;
     default:
       break;

@@ -64,8 +64,7 @@ class BagEstimate {
     constexpr double kAround = 58.0;         // a message's own header and its entry in the index
     constexpr double kConnection = 2 * 200;  // a topic is described in its first chunk and at the end
     const auto definition = static_cast<double>(std::string(ros::message_traits::definition(message)).size());
-    bytes_ +=
-        count * (kAround + ros::serialization::serializationLength(message)) + kConnection + 2.0 * definition;
+    bytes_ += count * (kAround + ros::serialization::serializationLength(message)) + kConnection + 2.0 * definition;
   }
 
   Counts count_;
@@ -130,8 +129,7 @@ TrafficPrediction PredictTraffic(const LoadedScenario& scenario, int nodes) {
   constexpr double kRequestPrefix = 4.0, kReplyPrefix = 5.0;  // of TCPROS
   const ScenarioParams& params = scenario.params;
   const int vehicles = scenario.consist.vehicles();
-  const double exchanges_per_s = 1.0 / params.exchange_interval_s,
-               records_per_s = 1.0 / params.record_interval_s;
+  const double exchanges_per_s = 1.0 / params.exchange_interval_s, records_per_s = 1.0 / params.record_interval_s;
   TrafficPrediction traffic;
   traffic.calls_per_s = nodes * exchanges_per_s;
   for (const train_dynamics::Rank& rank : train_dynamics::SplitRanks(vehicles, nodes)) {
@@ -141,14 +139,12 @@ TrafficPrediction PredictTraffic(const LoadedScenario& scenario, int nodes) {
     train_dynamics::ResizeReply(rank.count, reply);
     traffic.bytes_to_nodes_per_s +=
         exchanges_per_s * (kRequestPrefix + ros::serialization::serializationLength(request));
-    traffic.bytes_from_nodes_per_s +=
-        exchanges_per_s * (kReplyPrefix + ros::serialization::serializationLength(reply));
+    traffic.bytes_from_nodes_per_s += exchanges_per_s * (kReplyPrefix + ros::serialization::serializationLength(reply));
   }
   constexpr double kRecordBytes = 8.0 * (train_dynamics::kRecordNumbers + 1);  // of a vehicle, and its digest
   const double wagon_bytes = ros::serialization::serializationLength(train_brake_msgs::WagonState());
   traffic.bytes_from_nodes_per_s +=
-      records_per_s *
-      (kRecordBytes * vehicles + wagon_bytes * static_cast<double>(params.DetailedVehicles().size()));
+      records_per_s * (kRecordBytes * vehicles + wagon_bytes * static_cast<double>(params.DetailedVehicles().size()));
   return traffic;
 }
 

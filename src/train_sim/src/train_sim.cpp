@@ -67,18 +67,14 @@ CLI::Validator Count(int least, int most) {
         const bool is_whole = number && text.find_first_not_of("0123456789") == std::string::npos;
         return is_whole && least <= *number && *number <= most
                    ? ""
-                   : fmt::format("must be a whole number from {} to {} in digits, got '{}'", least, most,
-                                 text);
+                   : fmt::format("must be a whole number from {} to {} in digits, got '{}'", least, most, text);
       },
       fmt::format("{} to {}", least, most));
 }
 
 /// A path. An empty one is that of a variable of the shell which is not set: nothing may be lost by that.
 const CLI::Validator kPath(
-    [](const std::string& text) {
-      return text.empty() ? "is empty: is a variable of the shell not set?" : "";
-    },
-    "");
+    [](const std::string& text) { return text.empty() ? "is empty: is a variable of the shell not set?" : ""; }, "");
 
 /// Options shared by the commands that read a file and change it.
 /// @return the file's option
@@ -132,10 +128,9 @@ int Main(int argc, char** argv) {
 
   CLI::App* run = app.add_subcommand("run", "simulate a scenario, and tell what it came to");
   AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
-  run->add_option(
-         "--resume", options.resume,
-         "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
-         "--out: a what-if run from there")
+  run->add_option("--resume", options.resume,
+                  "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
+                  "--out: a what-if run from there")
       ->check(kPath);
   run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
                   "simulated time [s] between checkpoints in the folder of --out; 0: none")
@@ -145,8 +140,7 @@ int Main(int argc, char** argv) {
                 "where results cannot be written: run to the end all the same, and end with 1");
   run->add_option("--model", options.model, "vehicle model; default: the scenario's")
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
-  run->add_option("--out", options.out,
-                  "folder for train.bag, config.yaml and summary.json; default: write nothing")
+  run->add_option("--out", options.out, "folder for train.bag, config.yaml and summary.json; default: write nothing")
       ->check(kPath);
   run->add_option("--threads", options.threads,
                   "threads; any number gives the same bits; default: one per core for 2d, one for ltd")
@@ -166,14 +160,13 @@ int Main(int argc, char** argv) {
       throw CLI::ValidationError("SCENARIO", "give a scenario, or --resume DIR");
     if (options.csv && !options.resume.empty())
       throw CLI::ValidationError("--csv", "a run is resumed with the tables that it began with");
-    if (options.csv && options.out.empty())
-      throw CLI::ValidationError("--csv", "needs --out DIR to write into");
+    if (options.csv && options.out.empty()) throw CLI::ValidationError("--csv", "needs --out DIR to write into");
     command = [&] { return train_sim::RunScenario(options); };
   });
 
   train_sim::CheckOptions planned;
-  CLI::App* check = app.add_subcommand(
-      "check", "check a scenario with all its parts, print what it is and what a run takes");
+  CLI::App* check =
+      app.add_subcommand("check", "check a scenario with all its parts, print what it is and what a run takes");
   AddInput(check, "SCENARIO", "scenario file", planned.scenario, planned.overrides);
   check->add_option("--model", planned.model, "vehicle model; default: the scenario's")
       ->check(CLI::IsMember({"2d", "ltd", "ltd-no-inertia"}));
@@ -195,16 +188,15 @@ int Main(int argc, char** argv) {
       [&] { command = [&] { return train_sim::ResolveScenario(resolved.scenario, resolved.overrides); }; });
 
   train_sim::KeysOptions keys;
-  CLI::App* show_keys = app.add_subcommand(
-      "keys", "print the keys of configuration files: unit, rule, default, meaning, example");
+  CLI::App* show_keys =
+      app.add_subcommand("keys", "print the keys of configuration files: unit, rule, default, meaning, example");
   show_keys->add_option("PATH", keys.path,
                         "which: vehicle, scenario.until, train.connection.slack_m, slack_m; default: all");
   CLI::Option* markdown = show_keys->add_flag("--markdown", keys.markdown, "print docs/configuration.md");
   show_keys->add_option("--json-schema", keys.schema_kind, "print the JSON schema of files of this kind")
       ->type_name("KIND")
       ->excludes(markdown);
-  show_keys->add_flag("--results", keys.results, "print docs/result_files.md: what a run leaves")
-      ->excludes(markdown);
+  show_keys->add_flag("--results", keys.results, "print docs/result_files.md: what a run leaves")->excludes(markdown);
   show_keys->add_flag("--kinds", keys.kinds, "print the kinds of files, one per line")->excludes(markdown);
   show_keys->callback([&] { command = [&] { return train_sim::PrintKeys(keys); }; });
 
@@ -215,8 +207,8 @@ int Main(int argc, char** argv) {
   start_folder->callback([&] { command = [&] { return train_sim::StartFolder(folder); }; });
 
   train_sim::RouteOptions route;
-  CLI::App* show_route = app.add_subcommand(
-      "route", "check a route - a track, a table of its points (CSV) or a scenario's - and draw it");
+  CLI::App* show_route =
+      app.add_subcommand("route", "check a route - a track, a table of its points (CSV) or a scenario's - and draw it");
   AddInput(show_route, "FILE", "track, table or scenario", route.file, route.overrides);
   show_route->add_option("--plot", route.plot, "draw it in this SVG file, over the position")->check(kPath);
   show_route->add_option("--csv", route.csv, "write it to this file as a table of points")->check(kPath);
@@ -231,40 +223,31 @@ int Main(int argc, char** argv) {
   verify->add_option("DIR_OR_BAG", recording.recording, "folder of a run, or bag, also of rosbag record")
       ->check(kPath)
       ->required();
-  verify
-      ->add_option("--config", recording.config,
-                   "scenario of the run; default: the folder's or the bag's own")
+  verify->add_option("--config", recording.config, "scenario of the run; default: the folder's or the bag's own")
       ->check(kPath);
-  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several")
-      ->check(kPath);
-  verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")
-      ->check(Count(1, 1024));
+  verify->add_option("--train", recording.train, "namespace of the train, if the bag holds several")->check(kPath);
+  verify->add_option("--threads", recording.threads, "threads; any number gives the same bits")->check(Count(1, 1024));
   verify->callback([&] { command = [&] { return train_sim::Verify(recording); }; });
 
-  CLI::App* modes =
-      app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
+  CLI::App* modes = app.add_subcommand("modes", "natural frequencies of a vehicle's 2D model, largest stable step");
   AddInput(modes, "VEHICLE", "vehicle file", vehicle, options.overrides);
   CLI::Option* with_shapes = modes->add_flag("--csv", table, "comma-separated, with the shapes");
   modes->add_flag("--json", options.json, "print one JSON object for programs")->excludes(with_shapes);
   modes->callback([&] {
     command = [&] {
       using train_sim::ModesFormat;
-      const ModesFormat format = options.json ? ModesFormat::kJson
-                                 : table      ? ModesFormat::kCsv
-                                              : ModesFormat::kText;
+      const ModesFormat format = options.json ? ModesFormat::kJson : table ? ModesFormat::kCsv : ModesFormat::kText;
       return train_sim::PrintModes(vehicle, options.overrides, format);
     };
   });
 
-  CLI::App* adhesion =
-      app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");
+  CLI::App* adhesion = app.add_subcommand("adhesion", "wheel-rail adhesion of a vehicle over creepage and speed");
   AddInput(adhesion, "VEHICLE", "vehicle file", vehicle, options.overrides);
   adhesion->add_flag("--csv", table, "comma-separated");
-  adhesion->callback(
-      [&] { command = [&] { return train_sim::PrintAdhesion(vehicle, options.overrides, table); }; });
+  adhesion->callback([&] { command = [&] { return train_sim::PrintAdhesion(vehicle, options.overrides, table); }; });
 
-  CLI::App* air_test = app.add_subcommand(
-      "air-test", "test the pneumatic brake of a scenario's train at rest; 1 if a test fails");
+  CLI::App* air_test =
+      app.add_subcommand("air-test", "test the pneumatic brake of a scenario's train at rest; 1 if a test fails");
   AddInput(air_test, "SCENARIO", "scenario file", vehicle, options.overrides);
   int trials = 0;
   std::uint32_t seed = 1;
@@ -281,11 +264,9 @@ int Main(int argc, char** argv) {
       [&] { command = [&] { return train_sim::PrintAirTest(vehicle, options.overrides, trials, seed); }; });
 
   CLI::App* brake_weight = app.add_subcommand(
-      "brake-weight",
-      "braked-weight percentage of a scenario's vehicles; its train beside the model of ETCS");
+      "brake-weight", "braked-weight percentage of a scenario's vehicles; its train beside the model of ETCS");
   AddInput(brake_weight, "SCENARIO", "scenario file", vehicle, options.overrides);
-  brake_weight->callback(
-      [&] { command = [&] { return train_sim::PrintBrakeWeight(vehicle, options.overrides); }; });
+  brake_weight->callback([&] { command = [&] { return train_sim::PrintBrakeWeight(vehicle, options.overrides); }; });
 
   RefuseUnknownCommand(app, argc, argv);
   try {

@@ -74,11 +74,10 @@ void PrintTable(const train_dynamics::BogieVehicle<kPerBogie>& wagon, const Wago
                        "largest shares of the kinetic energy");
   int number = 1;
   for (const WagonMode<kPerBogie>& mode : analysis.modes) {
-    train_console::Print("{:>5} {:>12.3f} {:>8.2f}%   {}\n", number++, mode.frequency_hz,
-                         100.0 * mode.damping_ratio, InWords(LargestShares(mode)));
+    train_console::Print("{:>5} {:>12.3f} {:>8.2f}%   {}\n", number++, mode.frequency_hz, 100.0 * mode.damping_ratio,
+                         InWords(LargestShares(mode)));
   }
-  train_console::Print("\nrigid-body motions: {} (travel, rotation of the wheelsets)\n",
-                       analysis.rigid_body_modes);
+  train_console::Print("\nrigid-body motions: {} (travel, rotation of the wheelsets)\n", analysis.rigid_body_modes);
   train_console::Print("largest stable explicit step: {:.3f} ms\n", 1e3 * analysis.largest_stable_step_s);
 }
 
@@ -97,14 +96,12 @@ void PrintJson(const train_dynamics::BogieVehicle<kPerBogie>& wagon, const Wagon
                                        {"rigid_body_modes", analysis.rigid_body_modes},
                                        {"largest_stable_step_s", analysis.largest_stable_step_s},
                                        {"modes", std::move(modes)}};
-  train_console::WriteOutput(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                             "\n");
+  train_console::WriteOutput(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace
 
-int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides,
-               ModesFormat format) {
+int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides, ModesFormat format) {
   const auto print = [format](const auto& wagon) {
     const auto analysis = train_dynamics::AnalyseModes(wagon);
     switch (format) {
@@ -137,8 +134,7 @@ int PrintAdhesion(const std::string& vehicle_file, const std::vector<std::string
   train_console::Print("\n");
   constexpr int kPoints = 41;
   for (int i = 0; i < kPoints; ++i) {
-    const double creepage =
-        i == 0 ? 0.0 : std::pow(10.0, -4.0 + 4.0 * (i - 1) / (kPoints - 2));  // 0.01 % ... 100 %
+    const double creepage = i == 0 ? 0.0 : std::pow(10.0, -4.0 + 4.0 * (i - 1) / (kPoints - 2));  // 0.01 % ... 100 %
     train_console::Print(fmt::runtime(csv ? "{:.6g}" : "{:>9.5f}"), creepage);
     for (double speed : speeds_kmh) {
       const double v = speed / 3.6;

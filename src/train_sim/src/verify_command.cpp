@@ -44,8 +44,7 @@ fs::path BagOf(const fs::path& recording) {
   if (!fs::exists(recording)) throw train_results::UnreadableBag("there is no such file or folder");
   if (!fs::is_directory(recording)) return recording;
   if (fs::exists(recording / "train.bag")) return recording / "train.bag";
-  if (fs::exists(recording / "train.bag.active"))
-    return recording / "train.bag.active";  // of a run that was cut off
+  if (fs::exists(recording / "train.bag.active")) return recording / "train.bag.active";  // of a run that was cut off
   throw train_results::UnreadableBag("the folder holds no train.bag");
 }
 
@@ -56,11 +55,10 @@ fs::path FolderOf(const fs::path& recording) {
 }
 
 /// Whether what lies in its folder is of the same run: a folder of results, or the bag in it.
-bool IsOfARun(const fs::path& recording) {
-  return fs::is_directory(recording) || recording.filename() == "train.bag";
-}
+bool IsOfARun(const fs::path& recording) { return fs::is_directory(recording) || recording.filename() == "train.bag"; }
 
-/// A scenario without its comments and without the place of its pressure table, which a run copies beside its config.yaml.
+/// A scenario without its comments and without the place of its pressure table, which a run copies beside its
+/// config.yaml.
 std::string WithoutPlaces(const std::string& scenario) {
   std::istringstream lines(scenario);
   std::string kept;
@@ -76,14 +74,13 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   if (!options.config.empty()) return LoadScenario(options.config, {});
   const fs::path beside = FolderOf(options.recording) / "config.yaml";
   const std::optional<std::string> within = recorded.Scenario();
-  // A folder's config.yaml may name files beside it, which a bag cannot hold, so it is taken, if it is still the run's. (The bag of a
-  // branch begins with what the other run had.)
+  // A folder's config.yaml may name files beside it, which a bag cannot hold, so it is taken, if it is still the run's.
+  // (The bag of a branch begins with what the other run had.)
   const bool is_beside = IsOfARun(options.recording) && fs::exists(beside);
   const bool is_branch = fs::exists(FolderOf(options.recording) / train_results::kBranchFile);
   if (within && is_beside && !is_branch &&
       WithoutPlaces(*within) != WithoutPlaces(train_results::ReadPlainFile(beside, kLargestConfig))) {
-    train_console::Tell("warning: {} is not the scenario that the bag holds, which is repeated\n",
-                        beside.string());
+    train_console::Tell("warning: {} is not the scenario that the bag holds, which is repeated\n", beside.string());
     return train_dynamics::config::LoadScenarioText(*within, "the scenario in the bag");
   }
   if (within && !is_beside) {
@@ -163,19 +160,18 @@ void Comparison::Check(RecordedTopic* topic, const TrainRecord& record, Message&
       differences_.insert(differences_.end(), found.begin(), found.end());
     } else {
       differences_.push_back({0, "",
-                              fmt::format("{} has a message of exchange {}, of which there is none now",
-                                          topic->name(), topic->exchange())});
+                              fmt::format("{} has a message of exchange {}, of which there is none now", topic->name(),
+                                          topic->exchange())});
     }
   }
 }
 
 void Comparison::CheckWagons(const TrainRecord& record) {
   for (const train_dynamics::WagonDetail& detail : record.vehicles.details) {
-    Check(recorded_.wagon(train_dynamics::VehicleName(detail.vehicle, vehicles_)), record, wagon_,
-          [&](auto& message) {
-            train_results::Convert(record, detail, message);
-            return true;
-          });
+    Check(recorded_.wagon(train_dynamics::VehicleName(detail.vehicle, vehicles_)), record, wagon_, [&](auto& message) {
+      train_results::Convert(record, detail, message);
+      return true;
+    });
   }
 }
 
@@ -232,21 +228,19 @@ std::string Comparison::Verdict() const {
   const auto value = std::find_if(differences_.begin(), differences_.end(), [&](const Difference& each) {
     return !is_digest(each) && (vehicle == 0 || each.vehicle == vehicle);
   });
-  std::string what =
-      "the chain of digests, but no recorded value: the memory of a draft gear, or an earlier record";
+  std::string what = "the chain of digests, but no recorded value: the memory of a draft gear, or an earlier record";
   if (value != differences_.end()) {
     what = value->text;
   } else if (vehicle > 0) {
-    what =
-        fmt::format("vehicle {}: its state, but no recorded value (detail_vehicles: [{}] records them all)",
-                    vehicle, vehicle);
+    what = fmt::format("vehicle {}: its state, but no recorded value (detail_vehicles: [{}] records them all)", vehicle,
+                       vehicle);
   }
   return fmt::format(
       "different: the first record that differs is that of {:g} s (exchange {})\n"
       "  {}\n"
       "  {} of {} vehicles differ in it; the {} records before it are the same\n",
-      time_s_, exchange_, what, std::count_if(differences_.begin(), differences_.end(), is_vehicle),
-      vehicles_, records_);
+      time_s_, exchange_, what, std::count_if(differences_.begin(), differences_.end(), is_vehicle), vehicles_,
+      records_);
 }
 
 /// The digest in the summary.json of a whole run, where the recording is such a run's; else nothing.
@@ -274,14 +268,14 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   const std::optional<std::string> summarised = DigestInSummary(options.recording);
   LoadedScenario scenario = ScenarioOf(options, recorded);
   if (const auto external = train_dynamics::ExternalRanks(scenario.params.train); !external.empty()) {
-    throw train_results::UnreadableBag(fmt::format(
-        "{}{} external, and only the node {} can move them again: run {} with it once more, and compare "
-        "state_digest in summary.json",
-        VehiclesText(external.front()),
-        external.size() > 1          ? " and others are"
-        : external.front().count > 1 ? " are"
-                                     : " is",
-        external.front().name, recorded.LiveCommands().empty() ? "config.yaml" : "replay.yaml"));
+    throw train_results::UnreadableBag(
+        fmt::format("{}{} external, and only the node {} can move them again: run {} with it once more, and compare "
+                    "state_digest in summary.json",
+                    VehiclesText(external.front()),
+                    external.size() > 1          ? " and others are"
+                    : external.front().count > 1 ? " are"
+                                                 : " is",
+                    external.front().name, recorded.LiveCommands().empty() ? "config.yaml" : "replay.yaml"));
   }
   scenario.params.detail_vehicles = WagonsIn(recorded, scenario.consist.vehicles());
   const ScenarioParams& params = scenario.params;
@@ -289,8 +283,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   Comparison comparison(recorded, scenario.consist.vehicles());
   const std::optional<train_dynamics::TrainCheckpoint> branch = BranchOf(options.recording);
   const std::uint64_t first = branch ? branch->exchange : 0;
-  train_run::TrainRun run(params, scenario.consist, vehicles, scenario.pressures,
-                          branch ? &*branch : nullptr);
+  train_run::TrainRun run(params, scenario.consist, vehicles, scenario.pressures, branch ? &*branch : nullptr);
   const train_dynamics::TrainMaster& master = run.master();
   train_run::Progress progress(params.duration_s, run.start_s());
   run.AddObserver([&](const TrainRecord& record) { comparison.Observe(record); });
@@ -304,8 +297,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   std::size_t next_live = 0;
   while (next_live < live.size() && *live[next_live].exchange < static_cast<double>(first)) ++next_live;
   hooks.begins = [&] {
-    for (; next_live < live.size() && *live[next_live].exchange <= static_cast<double>(master.exchange());
-         ++next_live)
+    for (; next_live < live.size() && *live[next_live].exchange <= static_cast<double>(master.exchange()); ++next_live)
       run.Command(live[next_live]);
   };
   hooks.ends = [&] { return comparison.Finished() || train_run::Interrupt() != 0; };
@@ -317,8 +309,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
     return train_run::kDifferent;
   }
   if (!run.fault().empty()) {
-    train_console::Print("different: the repeated run failed where the recorded run continued: {}\n",
-                         run.fault());
+    train_console::Print("different: the repeated run failed where the recorded run continued: {}\n", run.fault());
     return train_run::kDifferent;
   }
   if (!comparison.Finished()) {
@@ -326,36 +317,31 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
       train_console::Print("different: the bag goes on after the end at {:g} s\n", params.duration_s);
       return train_run::kDifferent;
     }
-    train_console::Print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(),
-                         params.duration_s);
+    train_console::Print("interrupted at {:g} s of {:g} s: the same so far\n", master.time_s(), params.duration_s);
     return train_run::kInterrupted;
   }
-  const long end =
-      master.EndedByUntil() ? static_cast<long>(master.exchange()) : params.Exchanges();  // of the run
+  const long end = master.EndedByUntil() ? static_cast<long>(master.exchange()) : params.Exchanges();  // of the run
   const long all = (end - static_cast<long>(first)) / params.ExchangesPerRecord() + (branch ? 0 : 1);
-  const char* const covered =
-      comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
+  const char* const covered = comparison.records() < all ? "; the digest covers those that are not in the bag" : "";
   if (!master.Done()) {
-    train_console::Print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n",
-                         master.time_s(), params.duration_s, comparison.records());
+    train_console::Print("incomplete: the bag ends at {:g} s of {:g} s; the same so far, {} records\n", master.time_s(),
+                         params.duration_s, comparison.records());
     return train_run::kIncomplete;
   }
   const std::string digest = fmt::format("{:016x}", master.state_digest());
   if (summarised && *summarised != digest) {
-    train_console::Print(
-        "different: the records are the same, but summary.json has the digest {}, now it is {}\n",
-        *summarised, digest);
+    train_console::Print("different: the records are the same, but summary.json has the digest {}, now it is {}\n",
+                         *summarised, digest);
     return train_run::kDifferent;
   }
-  const std::string begin =
-      branch ? fmt::format("from {:g} s, where it left another run, ", run.start_s()) : "";
-  train_console::Print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}",
-                       comparison.records(), all, scenario.consist.vehicles(), begin, master.time_s(), digest,
-                       covered, comparison.Missing());
+  const std::string begin = branch ? fmt::format("from {:g} s, where it left another run, ", run.start_s()) : "";
+  train_console::Print("same: {} of {} records of {} vehicles {}to {:g} s, digest {}{}\n{}", comparison.records(), all,
+                       scenario.consist.vehicles(), begin, master.time_s(), digest, covered, comparison.Missing());
   return train_run::kSuccess;
 }
 
-/// "train_brake 0.1.0": the program that recorded a run, by its bag or the summary.json beside it; empty where neither tells.
+/// "train_brake 0.1.0": the program that recorded a run, by its bag or the summary.json beside it; empty where neither
+/// tells.
 std::string WriterOf(const fs::path& recording) {
   try {
     const std::string writer = train_results::WriterOf(BagOf(recording));

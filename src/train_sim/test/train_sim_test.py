@@ -254,8 +254,8 @@ class TrainSimTest(unittest.TestCase):
         again = self.run_ok(
             EMERGENCY, "--model", "ltd", *settings, "--set", f"pressure_table={table}", "--out", str(self.out) + "2"
         )
-        # Linear between samples 10 ms apart: the pressure is off by up to beta^2 p dt^2 / 8 = 0.3 Pa of 430 kPa while it
-        # rises (2/3 of that in the mean: 0.8 Pa s of an impulse of 9e5 Pa s in these 6 s), and its impulse by up to
+        # Linear between samples 10 ms apart: the pressure is off by up to beta^2 p dt^2 / 8 = 0.3 Pa of 430 kPa while
+        # it rises (2/3 of that in the mean: 0.8 Pa s of an impulse of 9e5 Pa s in these 6 s), and its impulse by up to
         # beta p dt^2 / 8 = 1.3 Pa s at the kink where the wave arrives: 2.5e-6 of the 0.76 km/h that braking takes.
         self.assertAlmostEqual(ltd["final_speed_kmh"]["mean"], again["final_speed_kmh"]["mean"], delta=2e-6)
         resolved = self.run_ok(pathlib.Path(str(self.out) + "2") / "config.yaml")

@@ -56,8 +56,8 @@ const ConfigureRequest& RightConfigure() {
     const auto scenario = train_dynamics::config::LoadScenario(
         std::string(TRAIN_BRAKE_CONFIG_DIR) + "/scenarios/emergency.yaml",
         {"model=ltd", "detail_vehicles=[]",
-         "train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 3}]}",
-         "brake=single_vehicle", "record_interval_s=0.002", "duration_s=2"});
+         "train={name: t, connection: calibrated, consist: [{vehicle: ore_wagon, count: 3}]}", "brake=single_vehicle",
+         "record_interval_s=0.002", "duration_s=2"});
     ConfigureRequest right;
     right.protocol_version = ConfigureRequest::PROTOCOL_VERSION;
     right.run_id = kRun;
@@ -111,16 +111,14 @@ bool MayStep(const StepRequest& request, std::uint64_t next, const StepRequest& 
   if (request.run_id != kRun) return false;
   if (next > 0 && request.exchange == next - 1) {
     return request.dt_s == last.dt_s && request.steps == last.steps &&
-           request.coupler_force_n == last.coupler_force_n &&
-           request.cylinder_pressure_pa == last.cylinder_pressure_pa;
+           request.coupler_force_n == last.coupler_force_n && request.cylinder_pressure_pa == last.cylinder_pressure_pa;
   }
   const auto all_finite = [](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   };
   return request.exchange == next && request.dt_s == 0.001 && request.steps == 1 &&
-         request.coupler_force_n.size() == kVehicles + 1 &&
-         request.cylinder_pressure_pa.size() == kVehicles && all_finite(request.coupler_force_n) &&
-         all_finite(request.cylinder_pressure_pa);
+         request.coupler_force_n.size() == kVehicles + 1 && request.cylinder_pressure_pa.size() == kVehicles &&
+         all_finite(request.coupler_force_n) && all_finite(request.cylinder_pressure_pa);
 }
 
 template <class Message>

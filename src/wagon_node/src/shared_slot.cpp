@@ -20,10 +20,8 @@ bool SharedSlot::Wait(double timeout_s) {
   const std::uint32_t seen = head.requests.count();
   if (memory_.request(slot_).call() != served_) return true;
   // There may be a core for each thread of the ranks; but one of them is the master's, who is the next to work.
-  const bool has_core =
-      head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
-  const bool is_notified =
-      has_core ? spin_.Spin(head.requests, seen) : YieldUntil(head.requests, seen, head.yields);
+  const bool has_core = head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
+  const bool is_notified = has_core ? spin_.Spin(head.requests, seen) : YieldUntil(head.requests, seen, head.yields);
   if (!is_notified) head.requests.Wait(seen, timeout_s);
   return memory_.request(slot_).call() != served_;
 }
@@ -31,8 +29,7 @@ bool SharedSlot::Wait(double timeout_s) {
 void SharedSlot::Read(train_brake_msgs::StepRequest& request) {
   train_brake_msgs::MessageBuffer& buffer = memory_.request(slot_);
   served_ = buffer.call();
-  if (!buffer.Read(request, memory_.layout().request_room))
-    throw std::runtime_error("it does not fit its slot");
+  if (!buffer.Read(request, memory_.layout().request_room)) throw std::runtime_error("it does not fit its slot");
 }
 
 void SharedSlot::Reply(const train_brake_msgs::StepResponse& response) {

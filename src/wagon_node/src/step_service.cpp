@@ -142,8 +142,8 @@ void StepService::ServeFrames(Client& client) {
     client.transport->enableWrite();
     break;
   }
-  std::copy(client.in.begin() + static_cast<long>(begin),
-            client.in.begin() + static_cast<long>(client.received), client.in.begin());
+  std::copy(client.in.begin() + static_cast<long>(begin), client.in.begin() + static_cast<long>(client.received),
+            client.in.begin());
   client.received -= begin;
 }
 
@@ -184,8 +184,8 @@ void StepService::Greet(Client& client, const ros::Header& header) {
              {"request_type", ros::message_traits::datatype<Step::Request>()},
              {"response_type", ros::message_traits::datatype<Step::Response>()}};
   } else {
-    reply = {{"error", "client wants service " + name_ + " to have md5sum " + theirs + ", but it has " +
-                           ours + ". Dropping connection."}};
+    reply = {{"error", "client wants service " + name_ + " to have md5sum " + theirs + ", but it has " + ours +
+                           ". Dropping connection."}};
     client.is_leaving = true;
   }
   boost::shared_array<std::uint8_t> bytes;
@@ -201,8 +201,8 @@ void StepService::Greet(Client& client, const ros::Header& header) {
 /// @return whether all is written
 bool StepService::Flush(Client& client) {
   while (client.written < client.out.size()) {
-    const std::int32_t count = client.transport->write(
-        client.out.data() + client.written, static_cast<std::uint32_t>(client.out.size() - client.written));
+    const std::int32_t count = client.transport->write(client.out.data() + client.written,
+                                                       static_cast<std::uint32_t>(client.out.size() - client.written));
     if (count < 0) {  // the connection has ended
       client.is_leaving = true;
       return true;

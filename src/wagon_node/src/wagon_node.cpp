@@ -10,8 +10,8 @@ namespace {
 
 using train_console::Presentable;
 
-constexpr double kTick = 0.25;  // [s] between two looks at whether there is a master, while nothing comes
-constexpr int kQueue = 100;     // one second of simulated time
+constexpr double kTick = 0.25;              // [s] between two looks at whether there is a master, while nothing comes
+constexpr int kQueue = 100;                 // one second of simulated time
 constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that waits for its first run
 
 std::string CallerOf(const ros::M_string& connection_header) {
@@ -38,18 +38,17 @@ WagonNode::WagonNode(const WagonOptions& options)
       timeout_(options.master_timeout_s),
       may_share_memory_(options.shared_memory) {
   ros::AdvertiseServiceOptions configure;
-  configure.initBySpecType<ConfigureSpec>("configure",
-                                          [this](ConfigureCall& call) { return Configure(call); });
+  configure.initBySpecType<ConfigureSpec>("configure", [this](ConfigureCall& call) { return Configure(call); });
   configure.callback_queue = &queue_;
   configure_ = private_.advertiseService(configure);
 
-  step_ = std::make_unique<StepService>(
-      private_.resolveName("step"), [this](std::uint8_t* request, std::uint32_t size,
-                                           std::vector<std::uint8_t>& reply) { Step(request, size, reply); });
+  step_ = std::make_unique<StepService>(private_.resolveName("step"),
+                                        [this](std::uint8_t* request, std::uint32_t size,
+                                               std::vector<std::uint8_t>& reply) { Step(request, size, reply); });
   constexpr std::chrono::seconds kPeriod(10);  // rare: there may be hundreds of nodes for one ROS master
   registration_ = std::make_unique<train_node::RegistrationWatch>(
-      kPeriod, std::map<std::string, std::string>{{configure_.getService(), ""},
-                                                  {private_.resolveName("step"), step_->uri()}});
+      kPeriod,
+      std::map<std::string, std::string>{{configure_.getService(), ""}, {private_.resolveName("step"), step_->uri()}});
 }
 
 void WagonNode::Run() {
@@ -78,8 +77,7 @@ bool WagonNode::Configure(ConfigureCall& call) {
   for (const train_brake_msgs::WagonState& detail : call.response->record.details) {
     const std::string name =
         train_dynamics::VehicleName(static_cast<int>(detail.vehicle) - 1, server_.vehicles_in_train());
-    publishers_[detail.vehicle] =
-        node_.advertise<train_brake_msgs::WagonState>(name + "/state", kQueue, true);
+    publishers_[detail.vehicle] = node_.advertise<train_brake_msgs::WagonState>(name + "/state", kQueue, true);
   }
   ROS_DEBUG("configured by %s: %s", Presentable(caller).c_str(), call.response->message.c_str());
   Publish(call.response->record);
@@ -146,8 +144,7 @@ void WagonNode::ServeSlot() {
 }
 
 void WagonNode::Publish(const train_brake_msgs::RankRecord& record) {
-  for (const train_brake_msgs::WagonState& detail : record.details)
-    publishers_[detail.vehicle].publish(detail);
+  for (const train_brake_msgs::WagonState& detail : record.details) publishers_[detail.vehicle].publish(detail);
 }
 
 bool WagonNode::IsLeftAlone() {
@@ -163,8 +160,8 @@ bool WagonNode::IsLeftAlone() {
     if (is_there) last_contact_ = now;
   }
   if (timeout_.count() <= 0.0 || now - last_contact_ <= timeout_) return false;
-  ROS_WARN("%s has been gone for %.1f s: this wagon node leaves",
-           has_run ? "the train's master" : "the ROS master", timeout_.count());
+  ROS_WARN("%s has been gone for %.1f s: this wagon node leaves", has_run ? "the train's master" : "the ROS master",
+           timeout_.count());
   return true;
 }
 

@@ -55,8 +55,8 @@ std::vector<int> DetailedVehicles(const ScenarioParams& scenario, const train_dy
 /// What is replied to every exchange, from the arrays of the vehicles to those of a message.
 template <class Response>
 void CopyReply(const train_dynamics::ExchangeReply& state, Response& response) {
-  train_dynamics::ForEachReplyField(
-      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; }, state, response);
+  train_dynamics::ForEachReplyField([](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; },
+                                    state, response);
 }
 
 /// What is wrong with an array of a request; empty: nothing.
@@ -81,8 +81,7 @@ bool BeginWith(const Patches& known, const std::vector<double>& numbers) {
   if (numbers.size() < 3 * known.size()) return false;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const double* patch = &numbers[3 * i];
-    if (patch[0] != known[i].from_m || patch[1] != known[i].to_m ||
-        patch[2] != *known[i].friction_coefficient)
+    if (patch[0] != known[i].from_m || patch[1] != known[i].to_m || patch[2] != *known[i].friction_coefficient)
       return false;
   }
   return true;
@@ -92,13 +91,12 @@ bool BeginWith(const Patches& known, const std::vector<double>& numbers) {
 std::string CheckPatches(const Patches& known, const std::vector<double>& numbers) {
   constexpr std::size_t kMost = 3 * train_dynamics::kMostPatchesOnTheWay;
   if (numbers.size() % 3 != 0 || numbers.size() > kMost)
-    return "friction_patches has " + Text(numbers.size()) +
-           " values, expected three for each patch, at most " + Text(kMost);
+    return "friction_patches has " + Text(numbers.size()) + " values, expected three for each patch, at most " +
+           Text(kMost);
   if (!BeginWith(known, numbers)) return "friction_patches does not begin with those of the exchange before";
   for (std::size_t at = 0; at < numbers.size(); at += 3) {
     const double from_m = numbers[at], to_m = numbers[at + 1], friction = numbers[at + 2];
-    if (std::isfinite(from_m) && std::isfinite(to_m) && from_m < to_m && friction > 0.0 && friction <= 1.0)
-      continue;
+    if (std::isfinite(from_m) && std::isfinite(to_m) && from_m < to_m && friction > 0.0 && friction <= 1.0) continue;
     return "friction_patches from [" + Text(at) + "] on is no patch of rail";
   }
   return "";
@@ -108,8 +106,8 @@ std::string CheckPatches(const Patches& known, const std::vector<double>& number
 
 /// One rank's part of a run.
 struct WagonServer::Run {
-  Run(std::uint64_t run_id, const ScenarioParams& params, const train_dynamics::Consist& consist, int first,
-      int count, int threads)
+  Run(std::uint64_t run_id, const ScenarioParams& params, const train_dynamics::Consist& consist, int first, int count,
+      int threads)
       : id(run_id),
         scenario(params),
         rank{train_dynamics::VehicleName(first, consist.vehicles()), first, count},
@@ -118,15 +116,12 @@ struct WagonServer::Run {
         vehicles(params, consist, first, count, train_dynamics::UsefulThreads(params, first, count, threads)),
         state(count, DetailedVehicles(params, rank)) {}
 
-  bool IsRepeated(const StepRequest& request) const {
-    return has_replied && request.exchange == next_exchange - 1;
-  }
+  bool IsRepeated(const StepRequest& request) const { return has_replied && request.exchange == next_exchange - 1; }
   /// Whether a request would move the vehicles as the last one has.
   bool HasLastInputs(const StepRequest& request) const {
     return request.dt_s == loads.dt_s && request.steps == steps &&
            request.friction_patches.size() == 3 * loads.friction_patches.size() &&
-           BeginWith(loads.friction_patches, request.friction_patches) &&
-           train_dynamics::AreSameLoads(request, loads);
+           BeginWith(loads.friction_patches, request.friction_patches) && train_dynamics::AreSameLoads(request, loads);
   }
   /// Brings the vehicles to a snapshot. @throws SnapshotError
   void Restore(std::uint64_t exchange, const std::vector<std::uint8_t>& bytes);
@@ -151,10 +146,9 @@ void WagonServer::Run::Restore(std::uint64_t exchange, const std::vector<std::ui
   using train_dynamics::SnapshotError;
   const train_dynamics::BlockSnapshot snapshot = train_dynamics::DecodeBlockSnapshot(bytes);
   const std::size_t count = snapshot.states.size();
-  if (snapshot.first != static_cast<std::uint64_t>(rank.first) ||
-      count != static_cast<std::size_t>(rank.count)) {
-    throw SnapshotError("is of " + Text(count) + " vehicle(s) from " + Text(snapshot.first + 1) +
-                        " on, not of " + train_dynamics::VehiclesText(rank));
+  if (snapshot.first != static_cast<std::uint64_t>(rank.first) || count != static_cast<std::size_t>(rank.count)) {
+    throw SnapshotError("is of " + Text(count) + " vehicle(s) from " + Text(snapshot.first + 1) + " on, not of " +
+                        train_dynamics::VehiclesText(rank));
   }
   if (snapshot.exchange != exchange) {
     throw SnapshotError("is of exchange " + Text(snapshot.exchange) + ", not of exchange " + Text(exchange));
@@ -173,8 +167,8 @@ std::vector<std::uint8_t> WagonServer::Run::Snapshot() const {
 }
 
 void WagonServer::Run::Fill(bool with_energy, RankRecord& record) const {
-  train_dynamics::ForEachRecordField(
-      [](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; }, state, record);
+  train_dynamics::ForEachRecordField([](const train_dynamics::RecordInfo&, const auto& from, auto& to) { to = from; },
+                                     state, record);
   record.state_digest = state.state_digest;
   record.wheelset_work_j = state.wheelset_work_j;
   const auto* slides = reinterpret_cast<const double*>(state.slides.data());
@@ -219,8 +213,8 @@ void WagonServer::Configure(const ConfigureRequest& request, bool driven, Config
     response.threads = static_cast<std::uint32_t>(run->vehicles.threads());
     response.gives_snapshots = true;
     response.ok = true;
-    response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) +
-                       ", scenario " + run->scenario.name + ", run " + Text(run->id);
+    response.message = train_dynamics::VehiclesText(run->rank) + " of " + Text(run->vehicles_in_train) + ", scenario " +
+                       run->scenario.name + ", run " + Text(run->id);
     run_ = std::move(run);
   } catch (const train_dynamics::SnapshotError& e) {
     response.message = std::string("the snapshot ") + e.what();
@@ -237,13 +231,13 @@ std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& req
                   ": both must be of the same build");
   }
   if (request.scenario_digest != digest) {
-    throw Refusal("the scenario should have the digest " + Hex(request.scenario_digest) + ", but has " +
-                  Hex(digest) + " as it arrived");
+    throw Refusal("the scenario should have the digest " + Hex(request.scenario_digest) + ", but has " + Hex(digest) +
+                  " as it arrived");
   }
   if (request.run_id == 0) throw Refusal("run_id is 0, which stands for no run");
   if (run_ && request.run_id == run_->id && run_->next_exchange > 0 && !request.again) {
-    throw Refusal("run " + Text(run_->id) + " is configured already, and exchange " +
-                  Text(run_->next_exchange) + " is next");
+    throw Refusal("run " + Text(run_->id) + " is configured already, and exchange " + Text(run_->next_exchange) +
+                  " is next");
   }
   if (run_ && request.run_id != run_->id && driven) {
     throw Refusal("this wagon node is driven in another run, and run " + Text(request.run_id) +
@@ -254,8 +248,8 @@ std::unique_ptr<WagonServer::Run> WagonServer::Begin(const ConfigureRequest& req
   const std::uint64_t first = request.first_vehicle, count = request.vehicle_count;
   const auto vehicles = static_cast<std::uint64_t>(consist.vehicles());
   if (first < 1 || count < 1 || first - 1 + count > vehicles) {
-    throw Refusal("first_vehicle " + Text(first) + " and vehicle_count " + Text(count) +
-                  " are not in a train of " + Text(vehicles) + " vehicles");
+    throw Refusal("first_vehicle " + Text(first) + " and vehicle_count " + Text(count) + " are not in a train of " +
+                  Text(vehicles) + " vehicles");
   }
   auto run = std::make_unique<Run>(request.run_id, scenario, consist, static_cast<int>(first - 1),
                                    static_cast<int>(count), threads_);
@@ -284,8 +278,7 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   run.loads.steps = static_cast<int>(request.steps);
   run.loads.record = request.record;
   run.loads.ledger = request.ledger;
-  for (std::size_t at = 3 * run.loads.friction_patches.size(); at < request.friction_patches.size();
-       at += 3) {
+  for (std::size_t at = 3 * run.loads.friction_patches.size(); at < request.friction_patches.size(); at += 3) {
     const double* patch = &request.friction_patches[at];
     run.loads.friction_patches.push_back({patch[0], patch[1], patch[2], {}, {}});
   }
@@ -294,8 +287,7 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   ++run.next_exchange;
   if (request.record) {
     run.state.slides.clear();
-    run.vehicles.TellSlides(request.ledger,
-                            run.scenario.exchange_interval_s * static_cast<double>(run.next_exchange),
+    run.vehicles.TellSlides(request.ledger, run.scenario.exchange_interval_s * static_cast<double>(run.next_exchange),
                             run.state.slides);
   }
   run.has_replied = true;
@@ -303,8 +295,7 @@ const StepResponse& WagonServer::Step(const StepRequest& request) {
   reply.ok = true;
   reply.exchange = request.exchange;
   CopyReply(run.state, reply);
-  const train_dynamics::VehicleFault fault =
-      sound ? train_dynamics::VehicleFault() : run.vehicles.FindFault();
+  const train_dynamics::VehicleFault fault = sound ? train_dynamics::VehicleFault() : run.vehicles.FindFault();
   reply.fault_vehicle = static_cast<std::uint32_t>(fault.vehicle + 1);
   reply.fault = fault.what;
   if (!reply.record.state_digest.empty()) reply.record = RankRecord();  // of an earlier exchange
@@ -331,13 +322,11 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
   }
   if (request.dt_s != run.scenario.dt_s || request.steps != run.steps) {
     using train_dynamics::ShortestDecimal;
-    return Text(request.steps) + " steps of " + ShortestDecimal(request.dt_s) +
-           " s are asked for, but it is " + Text(run.steps) + " of " + ShortestDecimal(run.scenario.dt_s) +
-           " s in the scenario";
+    return Text(request.steps) + " steps of " + ShortestDecimal(request.dt_s) + " s are asked for, but it is " +
+           Text(run.steps) + " of " + ShortestDecimal(run.scenario.dt_s) + " s in the scenario";
   }
   const auto count = static_cast<std::size_t>(run.rank.count);
-  std::string wrong =
-      Check("coupler_force_n", request.coupler_force_n, count + 1, train_dynamics::Given::kAlways);
+  std::string wrong = Check("coupler_force_n", request.coupler_force_n, count + 1, train_dynamics::Given::kAlways);
   train_dynamics::ForEachLoad(
       [&](const train_dynamics::LoadInfo& load, const auto& values) {
         if (wrong.empty()) wrong = Check(load.name, values, count, load.given);

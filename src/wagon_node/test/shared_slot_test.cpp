@@ -100,11 +100,10 @@ TEST(SharedSlot, DeclinesMemoryThatMayGoAway) {
 
 TEST(SharedSlot, DeclinesALayoutThatIsLargerThanTheMemory) {
   const std::uint32_t huge = std::numeric_limits<std::uint32_t>::max();
-  for (const auto spoil :
-       {+[](ExchangeLayout& l) { l.slots = 4; }, +[](ExchangeLayout& l) { l.slots = huge; },
-        +[](ExchangeLayout& l) { l.request_room += 64; },
-        +[](ExchangeLayout& l) { l.slots = l.request_room = l.reply_room = huge; },
-        +[](ExchangeLayout& l) { l.magic += 1; }}) {
+  for (const auto spoil : {+[](ExchangeLayout& l) { l.slots = 4; }, +[](ExchangeLayout& l) { l.slots = huge; },
+                           +[](ExchangeLayout& l) { l.request_room += 64; },
+                           +[](ExchangeLayout& l) { l.slots = l.request_room = l.reply_room = huge; },
+                           +[](ExchangeLayout& l) { l.magic += 1; }}) {
     ExchangeLayout layout = Layout();
     spoil(layout);
     const File file(layout, Layout().Size());

@@ -28,8 +28,8 @@ constexpr std::uint64_t kRun = 17, kOtherRun = 18;
 constexpr int kFirst = 2, kCount = 3;  // the rank: vehicles 3-5 of 6
 
 LoadedScenario Load(const std::vector<std::string>& overrides = {}) {
-  return train_dynamics::config::LoadScenario(
-      std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml", overrides);
+  return train_dynamics::config::LoadScenario(std::string(TRAIN_BRAKE_CONFIG_DIR) + "/../test/short_train.yaml",
+                                              overrides);
 }
 
 ConfigureRequest ConfigureFor(const LoadedScenario& scenario) {
@@ -113,13 +113,11 @@ class Mirror : public train_dynamics::Transport {
     ExpectEnergies(response.record, reply);
   }
 
-  void Resume(std::uint64_t, const std::vector<train_dynamics::StateRow>&,
-              train_dynamics::ExchangeReply&) override {
+  void Resume(std::uint64_t, const std::vector<train_dynamics::StateRow>&, train_dynamics::ExchangeReply&) override {
     FAIL() << "no call of this test asks for it";
   }
 
-  void Exchange(const train_dynamics::ExchangeRequest& request,
-                train_dynamics::ExchangeReply& reply) override {
+  void Exchange(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) override {
     vehicles_.Exchange(request, reply);
     StepRequest part = StepFor(scenario_, request.exchange);
     part.record = request.record;
@@ -170,8 +168,7 @@ class Mirror : public train_dynamics::Transport {
                            record.details[0].body_pitch_radps.begin()));
   }
 
-  static void ExpectEnergies(const train_brake_msgs::RankRecord& record,
-                             const train_dynamics::ExchangeReply& reply) {
+  static void ExpectEnergies(const train_brake_msgs::RankRecord& record, const train_dynamics::ExchangeReply& reply) {
     ASSERT_EQ(record.dissipated_j.size(), std::size_t{kCount} * train_dynamics::kDissipations);
     for (int i = 0; i < kCount; ++i) {
       const train_dynamics::VehicleEnergy& energy = reply.energy[kFirst + i];
@@ -327,8 +324,7 @@ TEST_F(WagonServerTest, PatchesOfRailStayOnceTheyHaveCome) {
   // All answers up to records that feel the rail.
   const auto go_on = [&](WagonServer& server, const std::vector<double>& patches) {
     std::string answers;
-    for (std::uint64_t exchange = 2; exchange < 15; ++exchange)
-      answers += Bytes(server.Step(step(exchange, patches)));
+    for (std::uint64_t exchange = 2; exchange < 15; ++exchange) answers += Bytes(server.Step(step(exchange, patches)));
     return answers;
   };
   const std::string whole = go_on(server_, two);
@@ -384,18 +380,15 @@ TEST_F(WagonServerTest, RefusesStepsThatDoNotFitAndStaysAsItWas) {
     Step(exchange);
     twin.Step(StepFor(scenario_, exchange));
   }
-  const double nan = std::numeric_limits<double>::quiet_NaN(),
-               infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<std::function<void(StepRequest&)>, std::string>> wrong = {
       {[](auto& r) { r.run_id = kOtherRun; }, "run 18 is not known here: this wagon node is in another run"},
       {[](auto& r) { r.exchange = 3; }, "exchange 3 is past: exchange 5 is next"},
       {[](auto& r) { r.exchange = 7; }, "exchange 7 leaves a gap: exchange 5 is next"},
       {[](auto& r) { r.exchange = ~std::uint64_t{0}; },
        "exchange 18446744073709551615 leaves a gap: exchange 5 is next"},
-      {[](auto& r) { r.dt_s = 0.0005; },
-       "2 steps of 0.0005 s are asked for, but it is 2 of 0.001 s in the scenario"},
-      {[nan](auto& r) { r.dt_s = nan; },
-       "2 steps of nan s are asked for, but it is 2 of 0.001 s in the scenario"},
+      {[](auto& r) { r.dt_s = 0.0005; }, "2 steps of 0.0005 s are asked for, but it is 2 of 0.001 s in the scenario"},
+      {[nan](auto& r) { r.dt_s = nan; }, "2 steps of nan s are asked for, but it is 2 of 0.001 s in the scenario"},
       {[](auto& r) { r.steps = 4000000000; },
        "4000000000 steps of 0.001 s are asked for, but it is 2 of 0.001 s in the scenario"},
       {[](auto& r) { r.coupler_force_n.pop_back(); }, "coupler_force_n has 3 values, expected 4"},
@@ -411,8 +404,7 @@ TEST_F(WagonServerTest, RefusesStepsThatDoNotFitAndStaysAsItWas) {
        "friction_patches from [0] on is no patch of rail"},
       {[](auto& r) { r.friction_patches = {10.0, 20.0, 0.1, 30.0, 30.0, 0.1}; },
        "friction_patches from [3] on is no patch of rail"},
-      {[](auto& r) { r.cylinder_pressure_pa.push_back(0.0); },
-       "cylinder_pressure_pa has 4 values, expected 3"},
+      {[](auto& r) { r.cylinder_pressure_pa.push_back(0.0); }, "cylinder_pressure_pa has 4 values, expected 3"},
       {[](auto& r) { r.cylinder_pressure_pa.clear(); }, "cylinder_pressure_pa has 0 values, expected 3"},
       {[nan](auto& r) { r.coupler_force_n[3] = nan; }, "coupler_force_n[3] is nan, must be finite"},
       {[infinity](auto& r) { r.cylinder_pressure_pa[1] = -infinity; },
@@ -436,18 +428,15 @@ TEST_F(WagonServerTest, RefusesConfigurationsThatDoNotFitAndStaysAsItWas) {
     return std::string(text);
   }();
   const std::vector<std::pair<std::function<void(ConfigureRequest&)>, std::string>> wrong = {
-      {[](auto& r) { r.protocol_version = 99; },
-       "the master speaks protocol version 99, this wagon node version " +
-           std::to_string(ConfigureRequest::PROTOCOL_VERSION) + ": both must be of the same build"},
+      {[](auto& r) { r.protocol_version = 99; }, "the master speaks protocol version 99, this wagon node version " +
+                                                     std::to_string(ConfigureRequest::PROTOCOL_VERSION) +
+                                                     ": both must be of the same build"},
       {[](auto& r) { r.scenario_digest = 0xabc; },
        "the scenario should have the digest 0x0000000000000abc, but has " + digest + " as it arrived"},
       {[](auto& r) { r.run_id = 0; }, "run_id is 0, which stands for no run"},
-      {[](auto& r) { r.first_vehicle = 0; },
-       "first_vehicle 0 and vehicle_count 3 are not in a train of 6 vehicles"},
-      {[](auto& r) { r.first_vehicle = 5; },
-       "first_vehicle 5 and vehicle_count 3 are not in a train of 6 vehicles"},
-      {[](auto& r) { r.vehicle_count = 0; },
-       "first_vehicle 3 and vehicle_count 0 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.first_vehicle = 0; }, "first_vehicle 0 and vehicle_count 3 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.first_vehicle = 5; }, "first_vehicle 5 and vehicle_count 3 are not in a train of 6 vehicles"},
+      {[](auto& r) { r.vehicle_count = 0; }, "first_vehicle 3 and vehicle_count 0 are not in a train of 6 vehicles"},
       {[](auto& r) { r.vehicle_count = 4294967295; },
        "first_vehicle 3 and vehicle_count 4294967295 are not in a train of 6 vehicles"},
   };
@@ -490,8 +479,7 @@ TEST_F(WagonServerTest, ReadsNoFilesForAMaster) {
   request.scenario_digest = train_dynamics::TextDigest(request.scenario);
   const ConfigureResponse response = Configure(request);
   EXPECT_FALSE(response.ok);
-  EXPECT_NE(response.message.find("scenario:1: train must be a map, because no files are read here"),
-            std::string::npos)
+  EXPECT_NE(response.message.find("scenario:1: train must be a map, because no files are read here"), std::string::npos)
       << response.message;
 }
 
@@ -512,8 +500,7 @@ TEST_F(WagonServerTest, StartsAnotherRunWhenNobodyDrivesThePresentOne) {
 TEST_F(WagonServerTest, NamesTheVehicleThatGoesAstray) {
   Begin();
   StepRequest request = StepFor(scenario_, 0);
-  request.coupler_force_n[2] =
-      1e13;  // pulls vehicle 4 back and vehicle 5 on, far beyond any speed of a train
+  request.coupler_force_n[2] = 1e13;  // pulls vehicle 4 back and vehicle 5 on, far beyond any speed of a train
   const StepResponse& response = server_.Step(request);
   EXPECT_TRUE(response.ok);
   EXPECT_EQ(response.fault_vehicle, 4u);

@@ -11,8 +11,8 @@
 
 namespace ltd_master {
 
-/// Commands of a driver who sits in another node: received at any time, by any thread, given to the train at the start of an
-/// exchange, in the order of their arrival.
+/// Commands of a driver who sits in another node: received at any time, by any thread, given to the train at the start
+/// of an exchange, in the order of their arrival.
 class LiveCommands {
  public:
   /// Keeps a reference.
@@ -20,8 +20,7 @@ class LiveCommands {
 
   /// A command for the start of an exchange.
   /// @throws std::invalid_argument  naming what is wrong: no such kind, a number out of range, no such locomotive
-  train_dynamics::DriverCommand Judge(const train_brake_msgs::DriverCommand& message,
-                                      std::uint64_t exchange) const;
+  train_dynamics::DriverCommand Judge(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) const;
 
   /// @return the exchange at whose start it is given at the earliest
   /// @throws std::invalid_argument as Judge, and for a patch of rail too many

@@ -26,8 +26,8 @@ struct LockstepDriverOptions {
   double start_timeout_s = 60.0;  ///< [wall time] for the driver to come up; 0: for ever
   double deadline_s = 30.0;       ///< [wall time] for each answer; 0: for ever
   OnLostDriver on_lost = OnLostDriver::kEmergency;
-  double sight_m = 5000.0;     ///< how far the driver sees and knows the line
-  bool sees_couplers = false;  ///< the driver is shown the forces in all couplers
+  double sight_m = 5000.0;                                   ///< how far the driver sees and knows the line
+  bool sees_couplers = false;                                ///< the driver is shown the forces in all couplers
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
 };
 

@@ -37,10 +37,9 @@ namespace ltd_master {
 /// The private parameters of the node; launch/train.launch documents them.
 struct MasterOptions {
   std::string scenario;
-  int vehicles = 0;  ///< that the launch file expects in the train; 0 = any number
-  int ranks = 0;     ///< wagon nodes; 0 = the vehicles are in the master's own process
-  std::string
-      nodes;  ///< wagon nodes that the user of the launch file has asked for; "auto" or empty: any number
+  int vehicles = 0;   ///< that the launch file expects in the train; 0 = any number
+  int ranks = 0;      ///< wagon nodes; 0 = the vehicles are in the master's own process
+  std::string nodes;  ///< wagon nodes that the user of the launch file has asked for; "auto" or empty: any number
   bool global_clock = true;  ///< this train's time is also that of /clock
   std::vector<std::string> overrides;
   train_results::OutputOptions output;
@@ -56,8 +55,7 @@ struct MasterOptions {
 
   /// @param train_namespace  of the node
   /// @throws std::invalid_argument naming all parameters that are wrong or not known
-  static MasterOptions FromParameters(train_node::NodeParameters& parameters,
-                                      const std::string& train_namespace);
+  static MasterOptions FromParameters(train_node::NodeParameters& parameters, const std::string& train_namespace);
 };
 
 /// The master of a train as a ROS node: runs it once, publishes and records it, and can be paused.
@@ -95,13 +93,11 @@ class MasterNode {
   LiveTopics::Pace PaceNow() const;
   bool OnPause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
   bool OnResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
-  bool OnStep(train_brake_msgs::StepExchanges::Request& request,
-              train_brake_msgs::StepExchanges::Response& response);
+  bool OnStep(train_brake_msgs::StepExchanges::Request& request, train_brake_msgs::StepExchanges::Response& response);
   bool OnSetRealTimeFactor(train_brake_msgs::SetRealTimeFactor::Request& request,
                            train_brake_msgs::SetRealTimeFactor::Response& response);
   void OnCommand(const train_brake_msgs::DriverCommand& message);
-  bool OnGive(train_brake_msgs::GiveCommand::Request& request,
-              train_brake_msgs::GiveCommand::Response& response);
+  bool OnGive(train_brake_msgs::GiveCommand::Request& request, train_brake_msgs::GiveCommand::Response& response);
   bool OnIdentify(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
 
   using Clock = std::chrono::steady_clock;

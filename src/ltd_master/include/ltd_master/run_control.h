@@ -24,8 +24,7 @@ class RunControl {
   };
 
   /// @param real_time_factor  simulated over wall time to keep to; 0 = as fast as possible
-  RunControl(bool start_paused, double real_time_factor)
-      : paused_(start_paused), real_time_factor_(real_time_factor) {}
+  RunControl(bool start_paused, double real_time_factor) : paused_(start_paused), real_time_factor_(real_time_factor) {}
 
   /// Ends steps that are under way, and waits until the run stands still: for an exchange, and at most for `patience`.
   Reply Pause(std::chrono::milliseconds patience = std::chrono::seconds(5));

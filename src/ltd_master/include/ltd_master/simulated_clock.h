@@ -13,8 +13,8 @@ namespace ltd_master {
 ///   /clock   from one train per ROS master, whose nodes all have one /clock: from that in the namespace /train, or as
 ///            the parameter ~global_clock says
 ///
-/// Beside each clock stands the parameter `use_sim_time`, which tells nodes to follow it: true as long as the run lasts;
-/// afterwards it is again what it was, so that nodes that come later do not wait for a clock that has stopped.
+/// Beside each clock stands the parameter `use_sim_time`, which tells nodes to follow it: true as long as the run
+/// lasts; afterwards it is again what it was, so that nodes that come later do not wait for a clock that has stopped.
 ///
 /// Both topics are latched: who comes in a pause gets the time at which the train stands. ROS takes time 0 for "no time
 /// yet", so the clock begins at 1 ns.

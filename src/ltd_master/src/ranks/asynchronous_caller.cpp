@@ -182,8 +182,7 @@ class AsynchronousCaller : public RankCaller {
     std::uint32_t port = 0;
     if (!ros::ServiceManager::instance()->lookupService(service, host, port)) return WhyNotFound();
     try {
-      link = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Service>(),
-                                           kHandshake);
+      link = std::make_unique<ServiceLink>(service, host, port, ros::service_traits::md5sum<Service>(), kHandshake);
     } catch (const LinkRefused& e) {
       throw RankFailure(ranks_[rank], "connection", e.what());
     } catch (const LinkError& e) {

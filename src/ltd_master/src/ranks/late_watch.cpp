@@ -41,14 +41,11 @@ LateWatch::LateWatch(const std::vector<train_dynamics::Rank>& ranks, std::string
 bool LateWatch::Look(const std::vector<bool>& pending) {
   return patience_.Look([&](double waited_s) {
     ROS_WARN("%s: waiting for %.0f s already for %ld of %zu wagon nodes: %s", when_.c_str(), waited_s,
-             std::count(pending.begin(), pending.end(), true), ranks_.size(),
-             NamesOf(ranks_, pending).c_str());
+             std::count(pending.begin(), pending.end(), true), ranks_.size(), NamesOf(ranks_, pending).c_str());
   });
 }
 
-std::string LateWatch::NoReply() const {
-  return fmt::format("no reply within {:g} s", patience_.deadline_s());
-}
+std::string LateWatch::NoReply() const { return fmt::format("no reply within {:g} s", patience_.deadline_s()); }
 
 void LateWatch::GiveUp(const std::vector<LostRank>& lost) const {
   using Clock = std::chrono::steady_clock;

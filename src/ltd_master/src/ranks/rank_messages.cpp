@@ -33,8 +33,7 @@ std::vector<std::uint8_t> BytesOf(const StateRow& row) {
   std::vector<std::uint8_t> bytes;
   for (const double number : row) {
     const auto byte = static_cast<std::uint8_t>(std::clamp(number, 0.0, 255.0));
-    if (static_cast<double>(byte) != number)
-      throw train_dynamics::SnapshotError("is not one of external vehicles");
+    if (static_cast<double>(byte) != number) throw train_dynamics::SnapshotError("is not one of external vehicles");
     bytes.push_back(byte);
   }
   if (bytes.empty()) throw train_dynamics::SnapshotError("has nothing of external vehicles");
@@ -51,8 +50,7 @@ class Unpacker {
   void Reply(const Response& response, ExchangeReply& reply) const {
     const auto always = [](std::size_t) { return true; };
     train_dynamics::ForEachReplyField(
-        [&](const RecordInfo& field, const auto& from, auto& to) { Copy(field, from, always, to); }, response,
-        reply);
+        [&](const RecordInfo& field, const auto& from, auto& to) { Copy(field, from, always, to); }, response, reply);
   }
 
   /// @param models  [vehicle of the train]
@@ -68,8 +66,7 @@ class Unpacker {
         },
         record, reply);
     CheckSize("state_digest", record.state_digest.size(), Count());
-    std::copy(record.state_digest.begin(), record.state_digest.end(),
-              reply.state_digest.begin() + rank_.first);
+    std::copy(record.state_digest.begin(), record.state_digest.end(), reply.state_digest.begin() + rank_.first);
     constexpr std::size_t kWork = 2 * train_dynamics::kMostWheelsets;
     CheckSize("wheelset_work_j", record.wheelset_work_j.size(), kWork * Count());
     if (!AllFinite(record.wheelset_work_j)) Fail("replied wheelset_work_j that are not finite");
@@ -92,8 +89,8 @@ class Unpacker {
     }
   }
 
-  /// Of external vehicles: what their node leaves out follows from the coupler heads, or is NaN; the digest covers the heads and
-  /// what the node adds of its own.
+  /// Of external vehicles: what their node leaves out follows from the coupler heads, or is NaN; the digest covers the
+  /// heads and what the node adds of its own.
   /// @param start_m  [vehicle of the train] centre along the track
   void ExternalRecord(const train_brake_msgs::RankRecord& record, const std::vector<double>& start_m,
                       ExchangeReply& reply) const {
@@ -174,8 +171,7 @@ class Unpacker {
 
   /// @param vehicle  place in the train, from 1
   void CheckHosted(std::uint32_t vehicle) const {
-    const auto first = static_cast<std::uint32_t>(rank_.first),
-               count = static_cast<std::uint32_t>(rank_.count);
+    const auto first = static_cast<std::uint32_t>(rank_.first), count = static_cast<std::uint32_t>(rank_.count);
     if (vehicle > first && vehicle <= first + count) return;
     Fail(fmt::format("replied a fault of vehicle {}, which it does not have", vehicle));
   }
@@ -187,8 +183,7 @@ class Unpacker {
 
   /// @param is_computed  of vehicle i of the rank: whether its numbers must be finite
   template <class From, class IsComputed>
-  void Copy(const RecordInfo& field, const From& from, const IsComputed& is_computed,
-            std::vector<double>& to) const {
+  void Copy(const RecordInfo& field, const From& from, const IsComputed& is_computed, std::vector<double>& to) const {
     const auto numbers = static_cast<std::size_t>(field.numbers);
     CheckSize(field.name, from.size(), Count() * numbers);
     for (std::size_t i = 0; i < from.size(); ++i) {

@@ -23,9 +23,8 @@ void RecoveryLog::Begin(std::uint64_t exchange, std::vector<Snapshot> snapshots)
 }
 
 void RecoveryLog::Add(const train_dynamics::ExchangeRequest& request) {
-  ForEachArray(request, [this](const std::vector<double>& array) {
-    inputs_.insert(inputs_.end(), array.begin(), array.end());
-  });
+  ForEachArray(request,
+               [this](const std::vector<double>& array) { inputs_.insert(inputs_.end(), array.begin(), array.end()); });
   patches_.push_back(request.friction_patches.size());
   ++size_;
 }

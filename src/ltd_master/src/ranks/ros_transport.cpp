@@ -75,13 +75,11 @@ void RosTransport::Resume(std::uint64_t exchange, const std::vector<train_dynami
 
 bool RosTransport::GivesSnapshots() const {
   bool all = true;
-  for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank)
-    all = all && messages_->GivesSnapshots(rank);
+  for (int rank = 0; rank < static_cast<int>(ranks_.size()); ++rank) all = all && messages_->GivesSnapshots(rank);
   return all;
 }
 
-void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request,
-                            train_dynamics::ExchangeReply& reply) {
+void RosTransport::Exchange(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) {
   const Clock::time_point start = Clock::now();
   request_ = request;
   if (options_.recover && (request.exchange + 1) % options_.snapshot_exchanges == 0) request_.snapshot = true;
@@ -113,8 +111,8 @@ void RosTransport::KeepForRecovery() {
 void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
                            const std::function<void(int rank)>& catch_up) {
   if (lost.empty()) return;
-  const bool can_recover = std::all_of(
-      lost.begin(), lost.end(), [this](const LostRank& one) { return messages_->GivesSnapshots(one.rank); });
+  const bool can_recover = std::all_of(lost.begin(), lost.end(),
+                                       [this](const LostRank& one) { return messages_->GivesSnapshots(one.rank); });
   if (!options_.recover || !can_recover) watch.GiveUp(lost);
   for (const LostRank& one : lost) {
     const RankFailure what(ranks_[one.rank], watch.when(), one.why);
@@ -129,8 +127,7 @@ void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& w
   }
 }
 
-void RosTransport::BringBack(const LostRank& lost, const std::string& when,
-                             const std::function<void()>& catch_up) {
+void RosTransport::BringBack(const LostRank& lost, const std::string& when, const std::function<void()>& catch_up) {
   const Clock::time_point start = Clock::now();
   double next_report_s = kSecondsPerReport;
   std::string tried;  // why the last node that was tried did not take its place
@@ -154,9 +151,8 @@ void RosTransport::BringBack(const LostRank& lost, const std::string& when,
                                     options_.recovery_timeout_s, tried.empty() ? why_not : tried));
     }
     if (waited_s > next_report_s) {
-      ROS_WARN("%s: waiting for %.0f s already for a node in the place of %s (%s): %s", when.c_str(),
-               waited_s, ranks_[lost.rank].name.c_str(), VehiclesText(ranks_[lost.rank]).c_str(),
-               why_not.c_str());
+      ROS_WARN("%s: waiting for %.0f s already for a node in the place of %s (%s): %s", when.c_str(), waited_s,
+               ranks_[lost.rank].name.c_str(), VehiclesText(ranks_[lost.rank]).c_str(), why_not.c_str());
       next_report_s += kSecondsPerReport;
     }
     std::this_thread::sleep_for(kRetry);
@@ -187,8 +183,7 @@ void RosTransport::Replay(int rank) {
 }
 
 void RosTransport::StepOne(int rank, train_brake_msgs::Step& call) {
-  LateWatch watch(ranks_, ExchangeText(call.request.exchange), options_.exchange_deadline_s,
-                  options_.interrupted);
+  LateWatch watch(ranks_, ExchangeText(call.request.exchange), options_.exchange_deadline_s, options_.interrupted);
   caller_->CallOne(rank, call, watch);
   if (!call.response.ok) throw RankFailure(ranks_[rank], watch.when(), call.response.message);
 }
@@ -215,8 +210,8 @@ void RosTransport::WaitForRanks() {
     if (in_vain || waited_s > next_report_s) {
       for (std::size_t other = rank + 1; other < ranks_.size(); ++other) why_not(other);
       const std::string text = fmt::format("{} of {} wagon nodes are missing after {:.0f} s: {}; {}: {}",
-                                           std::count(missing.begin(), missing.end(), true), ranks_.size(),
-                                           waited_s, NamesOf(ranks_, missing), ranks_[rank].name, why);
+                                           std::count(missing.begin(), missing.end(), true), ranks_.size(), waited_s,
+                                           NamesOf(ranks_, missing), ranks_[rank].name, why);
       if (in_vain) throw RankFailure(text);
       ROS_WARN("%s", text.c_str());
       next_report_s += kSecondsPerReport;

@@ -113,9 +113,7 @@ void ServiceLink::WaitFor(short events, double timeout_s, const char* what) cons
   if (!Poll(events, timeout_s)) throw LinkError(std::string("does not ") + what);
 }
 
-bool ServiceLink::Wait(double timeout_s) const {
-  return Poll(written_ < out_.size() ? POLLOUT : POLLIN, timeout_s);
-}
+bool ServiceLink::Wait(double timeout_s) const { return Poll(written_ < out_.size() ? POLLOUT : POLLIN, timeout_s); }
 
 bool ServiceLink::Poll(short events, double timeout_s) const {
   pollfd entry{descriptor_, events, 0};
@@ -168,8 +166,7 @@ bool ServiceLink::Fill() {
   }
   if (received_ > expected_) throw LinkError("sent more than one reply");
   if (in_[0] == 0) {
-    throw LinkError("failed: " +
-                    std::string(in_.begin() + kPrefix, in_.begin() + static_cast<long>(expected_)));
+    throw LinkError("failed: " + std::string(in_.begin() + kPrefix, in_.begin() + static_cast<long>(expected_)));
   }
   return true;
 }

@@ -50,8 +50,7 @@ std::system_error SystemError(const char* call) { return {errno, std::generic_ca
 
 }  // namespace
 
-SharedSlots::SharedSlots(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id)
-    : ranks_(ranks.size()) {
+SharedSlots::SharedSlots(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id) : ranks_(ranks.size()) {
   int vehicles = 0;
   for (const train_dynamics::Rank& rank : ranks) vehicles = std::max(vehicles, rank.count);
   ExchangeLayout layout;
@@ -63,8 +62,7 @@ SharedSlots::SharedSlots(const std::vector<train_dynamics::Rank>& ranks, std::ui
   if (descriptor_ < 0) throw SystemError("memfd_create");
   try {
     if (ftruncate(descriptor_, static_cast<off_t>(layout.Size())) != 0) throw SystemError("ftruncate");
-    if (fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
-      throw SystemError("seals");
+    if (fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) throw SystemError("seals");
     if (pwrite(descriptor_, &layout, sizeof layout, 0) != sizeof layout) throw SystemError("pwrite");
     memory_ = std::make_unique<train_brake_msgs::ExchangeMemory>(getpid(), descriptor_, run_id);
   } catch (...) {
@@ -126,8 +124,8 @@ void SharedSlots::Send(const std::vector<train_brake_msgs::Step>& calls) {
 void SharedSlots::Wait(double timeout_s) {
   train_brake_msgs::ExchangeHead& head = memory_->head();
   const bool has_core = head.threads < cores_;  // if not, a rank needs this one
-  const bool is_notified = has_core ? spin_.Spin(head.replies, seen_)
-                                    : train_brake_msgs::YieldUntil(head.replies, seen_, head.yields);
+  const bool is_notified =
+      has_core ? spin_.Spin(head.replies, seen_) : train_brake_msgs::YieldUntil(head.replies, seen_, head.yields);
   if (!is_notified) head.replies.Wait(seen_, timeout_s);
   end_ = std::chrono::steady_clock::now();
   seen_ = head.replies.count();

@@ -46,7 +46,6 @@ CsvTable ReadCsvTable(const std::string& file, ErrorList& errors);
 ///
 /// @param document  of which the nodes say that they are
 /// @return null after an error
-NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document,
-                    ErrorList& errors);
+NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document, ErrorList& errors);
 
 }  // namespace strict_config

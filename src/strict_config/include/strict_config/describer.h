@@ -27,23 +27,10 @@ struct KeyCondition {
 };
 
 struct KeyDescription {
-  enum class Kind {
-    kNumber,
-    kInteger,
-    kFlag,
-    kText,
-    kChoice,
-    kNumbers,
-    kIntegers,
-    kGroup,
-    kList,
-    kPart,
-    kParts
-  };
+  enum class Kind { kNumber, kInteger, kFlag, kText, kChoice, kNumbers, kIntegers, kGroup, kList, kPart, kParts };
 
   std::string key;
-  const void* type =
-      nullptr;  ///< differs where one key stands for different structs with different values of another
+  const void* type = nullptr;  ///< differs where one key stands for different structs with different values of another
   Kind kind = Kind::kNumber;
   std::string meaning;
   Range range{};                        ///< of numbers
@@ -147,14 +134,13 @@ class Describer {
   const KeyDescription* Known(const KeyDescription& described) const;
 
   template <class Struct>
-  void AddMap(const char* key, KeyDescription::Kind kind, const char* folder, const Struct& value,
+  void AddMap(const char* key, KeyDescription::Kind kind, const char* folder, const Struct& value, const char* meaning);
+  template <class Struct>
+  void AddMap(const char* key, KeyDescription::Kind kind, const char* folder, const std::optional<Struct>& value,
               const char* meaning);
   template <class Struct>
-  void AddMap(const char* key, KeyDescription::Kind kind, const char* folder,
-              const std::optional<Struct>& value, const char* meaning);
-  template <class Struct>
-  void AddList(const char* key, KeyDescription::Kind kind, const char* folder,
-               const std::vector<Struct>& values, const char* meaning);
+  void AddList(const char* key, KeyDescription::Kind kind, const char* folder, const std::vector<Struct>& values,
+               const char* meaning);
 
   const std::vector<KeyDescription>& known_;
   const std::pair<std::string, std::string> set_;

@@ -54,8 +54,8 @@ class PartLibrary {
   bool MayFollow(const Node& reference, const KeyPath& key);
   NodePtr Parse(const std::string& text, Document document, const KeyPath& path);
   /// @param key  the path of the reference itself: that of the part, or of its base
-  NodePtr ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind,
-                           const KeyPath& path, FileChain& chain);
+  NodePtr ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind, const KeyPath& path,
+                           FileChain& chain);
   /// The file that a reference stands for, or an empty path after reporting an error.
   std::filesystem::path Locate(const Node& reference, const KeyPath& key, const std::string& kind);
   std::filesystem::path LocateName(const Node& reference, const KeyPath& key, const std::string& kind);

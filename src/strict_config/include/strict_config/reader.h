@@ -35,8 +35,8 @@ struct LoadOptions {
   /// The folder in which a `base: NAME` of the file itself is looked for; empty: the folder that the file is
   /// in.
   std::string kind;
-  /// The sizes that a number can have in reality, by the path of its key, beyond what its range allows: the reader of a file asks
-  /// whether the unit is right. Zero is not judged. Empty: all are.
+  /// The sizes that a number can have in reality, by the path of its key, beyond what its range allows: the reader of a
+  /// file asks whether the unit is right. Zero is not judged. Empty: all are.
   std::function<Range(const std::string& path)> plausible_size;
 };
 
@@ -104,8 +104,7 @@ class Reader {
   void Choice(const char* key, std::optional<Enum>& value, Choices<Enum> choices, const char* /*meaning*/) {
     std::vector<std::string> names;
     for (const auto& choice : choices) names.push_back(choice.first);
-    if (const std::optional<std::size_t> index = ReadChoice(key, names))
-      value = choices.begin()[*index].second;
+    if (const std::optional<std::size_t> index = ReadChoice(key, names)) value = choices.begin()[*index].second;
   }
 
   template <class Struct>
@@ -143,8 +142,7 @@ class Reader {
 
  private:
   template <class Struct, class Rules>
-  friend Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors,
-                     const Rules& rules);
+  friend Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors, const Rules& rules);
   template <class Struct>
   friend Struct LoadText(const std::string& text, const std::string& label, ErrorList& errors);
 

@@ -17,8 +17,8 @@ std::string Nearest(const std::string& written, const std::vector<std::string>& 
 /// where only the unit differs, or else the known keys.
 /// @param noun        what the words are: "key", "column"
 /// @param max_listed  the number of known words beyond which the list is cut
-std::string KeyHint(const std::string& written, const std::vector<std::string>& known,
-                    const std::string& noun = "key", std::size_t max_listed = 1000);
+std::string KeyHint(const std::string& written, const std::vector<std::string>& known, const std::string& noun = "key",
+                    std::size_t max_listed = 1000);
 
 /// "a, b, c", cut after `max` words.
 std::string Join(const std::vector<std::string>& words, std::size_t max);

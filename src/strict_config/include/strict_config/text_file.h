@@ -16,8 +16,7 @@ std::string DisplayPath(const std::filesystem::path& path);
 ///
 /// Refused, with an error that says which: a missing or unreadable file, a directory or device, more than
 /// `max_bytes`, NUL and other control characters, text that is not UTF-8.
-std::optional<std::string> ReadTextFile(const std::filesystem::path& path, std::size_t max_bytes,
-                                        ErrorList& errors);
+std::optional<std::string> ReadTextFile(const std::filesystem::path& path, std::size_t max_bytes, ErrorList& errors);
 
 /// Checks text that did not come from a file: no control characters, valid UTF-8. Reports under `label`.
 bool IsCleanText(const std::string& text, const std::string& label, ErrorList& errors);

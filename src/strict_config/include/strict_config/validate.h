@@ -14,15 +14,13 @@ namespace strict_config {
 class Validator {
  public:
   void Number(const char* key, double value, const Range& range, const char* /*meaning*/);
-  void Number(const char* key, const std::optional<double>& value, const Range& range,
-              const char* /*meaning*/) {
+  void Number(const char* key, const std::optional<double>& value, const Range& range, const char* /*meaning*/) {
     if (value) Number(key, *value, range, nullptr);
   }
   void Integer(const char* key, int value, const Range& range, const char* /*meaning*/);
   void Flag(const char*, bool, const char* /*meaning*/) {}
   void Text(const char*, const std::string&, const char* /*meaning*/) {}
-  void Numbers(const char* key, const std::vector<double>& values, const Range& range,
-               const char* /*meaning*/);
+  void Numbers(const char* key, const std::vector<double>& values, const Range& range, const char* /*meaning*/);
   void Integers(const char* key, const std::vector<int>& values, const Range& range, const char* /*meaning*/);
   void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
 

@@ -16,8 +16,7 @@ namespace strict_config {
 class Writer {
  public:
   void Number(const char* key, double value, const Range&, const char* /*meaning*/);
-  void Number(const char* key, const std::optional<double>& value, const Range& range,
-              const char* /*meaning*/) {
+  void Number(const char* key, const std::optional<double>& value, const Range& range, const char* /*meaning*/) {
     if (value) Number(key, *value, range, nullptr);
   }
   void Integer(const char* key, int value, const Range&, const char* /*meaning*/);

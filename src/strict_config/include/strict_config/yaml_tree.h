@@ -75,8 +75,8 @@ struct YamlLimits {
 ///
 /// @param root_path  the path of the document's root in the configuration, for messages
 /// @return null after an error that leaves nothing to read
-NodePtr ParseYaml(const std::string& text, const std::shared_ptr<const Document>& document,
-                  const KeyPath& root_path, ErrorList& errors);
+NodePtr ParseYaml(const std::string& text, const std::shared_ptr<const Document>& document, const KeyPath& root_path,
+                  ErrorList& errors);
 
 /// `over` on top of `base`, both maps: maps are merged key by key; lists and scalars replace.
 ///

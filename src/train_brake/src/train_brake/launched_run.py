@@ -186,7 +186,8 @@ def run(words):
     if told is None:
         return 2
     arguments.setdefault("vehicles", told["vehicles"])
-    # The launch file takes 2d, and one wagon node per core, where it is told nothing: a train without 2D vehicles needs none.
+    # The launch file takes 2d, and one wagon node per core, where it is told nothing: a train without 2D vehicles needs
+    # none.
     if "model" not in arguments:
         arguments["model"] = told["default_model"]
         arguments.setdefault("on_nodes", str("2d" in told["model"].split(", ")).lower())

@@ -162,7 +162,8 @@ def random_loads(vehicles, seed, seconds):
     return loads
 
 
-# ---- the tests: each returns what it has found, or raises Failure ------------------------------------------------------
+# ---- the tests: each returns what it has found, or raises Failure
+# ------------------------------------------------------
 
 
 def protocol(vehicles, seconds):

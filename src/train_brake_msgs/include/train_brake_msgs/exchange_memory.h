@@ -42,7 +42,8 @@ namespace train_brake_msgs {
 
 constexpr std::size_t kCacheLine = 64;
 
-/// An event count between processes: who reads it before looking for work misses no event, however late the wait begins.
+/// An event count between processes: who reads it before looking for work misses no event, however late the wait
+/// begins.
 class alignas(kCacheLine) EventCount {
  public:
   std::uint32_t count() const { return count_.load(); }
@@ -68,8 +69,8 @@ class alignas(kCacheLine) EventCount {
   std::atomic<std::uint32_t> waiters_;  ///< too many if some died in their sleep, which costs a needless call
 };
 
-/// Spins for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from whoever needs
-/// it, which shows only afterwards: after each spin in vain, twice as many waits (16 to 4096) go without.
+/// Spins for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from whoever
+/// needs it, which shows only afterwards: after each spin in vain, twice as many waits (16 to 4096) go without.
 class AdaptiveSpin {
  public:
   /// @return whether there has been an event since the count was read
@@ -99,9 +100,9 @@ class AdaptiveSpin {
   int to_leave_out_ = kFewest;
 };
 
-/// Yields the core to others up to so many times, as long as there has been no event since the count was read. With many
-/// ranks on a core that takes less time than to sleep and be woken, as long as the others are ranks, too; beside other work
-/// each yield may take as long as that wants.
+/// Yields the core to others up to so many times, as long as there has been no event since the count was read. With
+/// many ranks on a core that takes less time than to sleep and be woken, as long as the others are ranks, too; beside
+/// other work each yield may take as long as that wants.
 /// @return whether there has been an event
 inline bool YieldUntil(const EventCount& event, std::uint32_t seen, std::uint32_t yields) {
   constexpr std::uint32_t kMost = 64;  // so that whoever waits for long sleeps soon
@@ -171,9 +172,7 @@ struct ExchangeLayout {
   }
 
  private:
-  static std::size_t WholeLines(std::size_t size) {
-    return (size + kCacheLine - 1) / kCacheLine * kCacheLine;
-  }
+  static std::size_t WholeLines(std::size_t size) { return (size + kCacheLine - 1) / kCacheLine * kCacheLine; }
 };
 
 /// What the slots follow. All zero in the beginning, but the layout.
@@ -192,8 +191,7 @@ inline std::size_t ExchangeLayout::SlotOffset(std::uint32_t slot) const {
   return sizeof(ExchangeHead) + slot * SlotSize();
 }
 
-static_assert(std::atomic<std::uint64_t>::is_always_lock_free &&
-                  std::atomic<std::uint32_t>::is_always_lock_free,
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free,
               "an atomic that takes a lock is none between processes");
 
 /// The memory as a process sees it.
@@ -209,8 +207,7 @@ class ExchangeMemory {
     if (seals < 0 || (seals & F_SEAL_SHRINK) == 0) throw std::runtime_error(path + " is not sealed memory");
     region_ = ipc::mapped_region(file, ipc::read_write);
     if (region_.get_size() >= sizeof(ExchangeHead)) layout_ = head().layout;
-    if (layout_.run_id != run_id || layout_.magic != ExchangeLayout::kMagic ||
-        !layout_.FitsInto(region_.get_size())) {
+    if (layout_.run_id != run_id || layout_.magic != ExchangeLayout::kMagic || !layout_.FitsInto(region_.get_size())) {
       throw std::runtime_error(path + " is not the memory of run " + std::to_string(run_id));
     }
   }
@@ -218,9 +215,7 @@ class ExchangeMemory {
   const ExchangeLayout& layout() const { return layout_; }
   ExchangeHead& head() const { return *static_cast<ExchangeHead*>(region_.get_address()); }
   MessageBuffer& request(std::uint32_t slot) const { return BufferAt(layout_.SlotOffset(slot)); }
-  MessageBuffer& reply(std::uint32_t slot) const {
-    return BufferAt(layout_.SlotOffset(slot) + layout_.RequestSize());
-  }
+  MessageBuffer& reply(std::uint32_t slot) const { return BufferAt(layout_.SlotOffset(slot) + layout_.RequestSize()); }
 
  private:
   MessageBuffer& BufferAt(std::size_t offset) const {

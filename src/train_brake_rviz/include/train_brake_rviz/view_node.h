@@ -46,8 +46,7 @@ class ViewNode {
 
   void OnScenario(const std_msgs::String& message);
   void OnState(const train_brake_msgs::TrainStateConstPtr& message);
-  bool OnSelect(train_brake_msgs::SelectView::Request& request,
-                train_brake_msgs::SelectView::Response& response);
+  bool OnSelect(train_brake_msgs::SelectView::Request& request, train_brake_msgs::SelectView::Response& response);
 
   void Begin(const train_dynamics::ScenarioParams& scenario);
   void PublishSelection();

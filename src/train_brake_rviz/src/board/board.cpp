@@ -67,9 +67,9 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
     // What comes into view of a train that does not gain speed.
     const double way = scenario.MeanInitialSpeed() * scenario.duration_s;
     const double front = scenario.start_position_m;
-    vertical_exaggeration_ = FittingExaggeration(
-        elevation_, front + std::min(0.0, way) - window_m_, front + std::max(0.0, way), window_m_,
-        layout::kTrain.width() / window_m_, TrainStrip::RoomForTrack(layout::kTrain));
+    vertical_exaggeration_ =
+        FittingExaggeration(elevation_, front + std::min(0.0, way) - window_m_, front + std::max(0.0, way), window_m_,
+                            layout::kTrain.width() / window_m_, TrainStrip::RoomForTrack(layout::kTrain));
   }
   for (std::size_t type = 0; type < consist_.vehicle_types.size(); ++type) {
     at_rest_.emplace_back();
@@ -147,8 +147,7 @@ void Board::DrawNumbers(Drawing& drawing, const Snapshot& snapshot) const {
   };
   card("time", fmt::format("{:.2f} s", snapshot.time_s), 22.0);
   if (!snapshot.speed_mps.empty()) {
-    const double momentum =
-        std::inner_product(masses_kg_.begin(), masses_kg_.end(), snapshot.speed_mps.begin(), 0.0);
+    const double momentum = std::inner_product(masses_kg_.begin(), masses_kg_.end(), snapshot.speed_mps.begin(), 0.0);
     const double mean = momentum / std::accumulate(masses_kg_.begin(), masses_kg_.end(), 0.0);
     card("speed", fmt::format("{:.1f} km/h", kKmhPerMps * mean), 25.0);
     card("distance", fmt::format("{:.0f} m", snapshot.position_m.front() - scenario_.start_position_m), 21.0);
@@ -162,8 +161,8 @@ void Board::DrawForces(Drawing& drawing, const Snapshot& snapshot, const Absciss
   const AlongPlot plot(area, {-limit, limit, area.bottom, area.top}, abscissa);
   plot.DrawAxes(drawing, "coupler force [kN]; grey: seen so far", VehicleGrid(snapshot));
   if (snapshot.coupler_force_n.empty()) {
-    drawing.Write(area.Centre(), Align::kCentre, layout::kText,
-                  vehicles() == 1 ? "no couplers" : "not recorded", palette::kDark);
+    drawing.Write(area.Centre(), Align::kCentre, layout::kText, vehicles() == 1 ? "no couplers" : "not recorded",
+                  palette::kDark);
     return;
   }
 
@@ -207,10 +206,9 @@ void Board::DrawPressures(Drawing& drawing, const Snapshot& snapshot, const Absc
     return;
   }
 
-  const std::vector<double> pressure = Scaled(snapshot.cylinder_pressure_pa, kKilo),
-                            zero(pressure.size(), 0.0);
-  const std::vector<double> edges = VehicleEdges(snapshot.position_m, consist_.vehicle(0).length_m,
-                                                 consist_.vehicle(vehicles() - 1).length_m);
+  const std::vector<double> pressure = Scaled(snapshot.cylinder_pressure_pa, kKilo), zero(pressure.size(), 0.0);
+  const std::vector<double> edges =
+      VehicleEdges(snapshot.position_m, consist_.vehicle(0).length_m, consist_.vehicle(vehicles() - 1).length_m);
   drawing.On(Layer::kBack);
   plot.DrawBars(drawing, edges, zero, pressures_seen_.high, palette::kShade);
   drawing.On(Layer::kFill);
@@ -225,16 +223,15 @@ std::vector<Color> Board::Colors(const Snapshot& snapshot, const Selection& sele
   const double limit = color_limit_.at(quantity.name).value();
   std::vector<Color> colors(consist_.vehicle_type.size(), palette::kUnknown);
   const std::vector<double> values = quantity.values(snapshot);
-  for (size_t i = 0; i < values.size(); ++i)
-    colors[i] = ColorOf(quantity, quantity.per_si * values[i], limit);
+  for (size_t i = 0; i < values.size(); ++i) colors[i] = ColorOf(quantity, quantity.per_si * values[i], limit);
   return colors;
 }
 
 void Board::DrawTrain(Drawing& drawing, const Snapshot& snapshot, const Selection& selection,
                       const Abscissa& abscissa) const {
   const TrainStrip strip(layout::kTrain, elevation_, vertical_exaggeration_);
-  const std::vector<double> edges = VehicleEdges(snapshot.position_m, consist_.vehicle(0).length_m,
-                                                 consist_.vehicle(vehicles() - 1).length_m);
+  const std::vector<double> edges =
+      VehicleEdges(snapshot.position_m, consist_.vehicle(0).length_m, consist_.vehicle(vehicles() - 1).length_m);
   strip.DrawTrack(drawing, abscissa);
   strip.DrawVehicles(drawing, abscissa, edges, Colors(snapshot, selection));
   strip.DrawLocomotives(drawing, abscissa, edges, consist_.locomotives);
@@ -255,15 +252,13 @@ void Board::DrawTrain(Drawing& drawing, const Snapshot& snapshot, const Selectio
 void Board::DrawCloseUp(Drawing& drawing, const Snapshot& snapshot, const Selection& selection) const {
   const int followed = selection.vehicle;
   const CloseUp close_up(layout::kCloseUp, consist_.vehicle(followed),
-                         at_rest_[static_cast<size_t>(consist_.vehicle_type[followed])],
-                         options_.motion_exaggeration);
+                         at_rest_[static_cast<size_t>(consist_.vehicle_type[followed])], options_.motion_exaggeration);
   const std::vector<double>& force = snapshot.coupler_force_n;
   CloseUp::Sight sight{};
   sight.title = fmt::format("vehicle {}", followed + 1);
   sight.remark = snapshot.wagon ? fmt::format("motion × {:g}", options_.motion_exaggeration)
-                 : scenario_.model == train_dynamics::VehicleModel::kTwoD
-                     ? "drawn at rest: not in detail_vehicles"
-                     : "drawn at rest: a point mass";
+                 : scenario_.model == train_dynamics::VehicleModel::kTwoD ? "drawn at rest: not in detail_vehicles"
+                                                                          : "drawn at rest: a point mass";
   sight.centre_m = snapshot.position_m[followed];
   sight.detail = snapshot.wagon ? &*snapshot.wagon : nullptr;
   if (followed > 0 && !force.empty()) sight.front_force_n = force[followed - 1];
@@ -296,10 +291,8 @@ void Board::DrawLegend(Drawing& drawing, const Selection& selection) const {
                   TickText(tick, ticks[1] - ticks[0]));
   }
   if (quantity.diverging) {
-    drawing.Write({bar.left, bar.bottom - 3.8}, Align::kLeft, layout::kSmallText, quantity.negative,
-                  palette::kDark);
-    drawing.Write({bar.right, bar.bottom - 3.8}, Align::kRight, layout::kSmallText, quantity.positive,
-                  palette::kDark);
+    drawing.Write({bar.left, bar.bottom - 3.8}, Align::kLeft, layout::kSmallText, quantity.negative, palette::kDark);
+    drawing.Write({bar.right, bar.bottom - 3.8}, Align::kRight, layout::kSmallText, quantity.positive, palette::kDark);
   }
 
   // Arrows of the close-up.

@@ -20,7 +20,7 @@ constexpr double kSpan = 49.0;                      // width of the wagon on the
 constexpr double kRailUp = 10.0;                    // of the rail over the area's bottom
 constexpr double kLoadText = 3.3, kSlipText = 1.3;  // heights of the numbers over the area's bottom
 constexpr double kSliding = 0.1;                    // creepage from which a wheel counts as sliding
-constexpr double kUndergear = 0.62;  // height of a carbody's floor, of that of its centre of gravity
+constexpr double kUndergear = 0.62;                 // height of a carbody's floor, of that of its centre of gravity
 
 /// Whether a wheelset is locked, as train_dynamics/vehicle/slide_event.h says it.
 bool IsLocked(const train_dynamics::WagonDetail& detail, int wheelset) {
@@ -88,12 +88,10 @@ CloseUp::CloseUp(const Rectangle& area, const train_dynamics::VehicleParams& of_
 
 Point CloseUp::PlaceOf(const Bodies& position, int body, double offset_forward_m, double offset_up_m) const {
   const bool turns = body >= kWheelset1;  // wheels turn as they do, the others tilt as much as all moves
-  const double angle =
-      turns ? position.pitch[body] : exaggeration_ * (position.pitch[body] - at_rest_.pitch[body]);
-  const double forward =
-      forward_m_[body] +
-      exaggeration_ * (position.x[body] - MeanOfWheelsets(position, vehicle_.Wheelsets())) +
-      std::cos(angle) * offset_forward_m + std::sin(angle) * offset_up_m;
+  const double angle = turns ? position.pitch[body] : exaggeration_ * (position.pitch[body] - at_rest_.pitch[body]);
+  const double forward = forward_m_[body] +
+                         exaggeration_ * (position.x[body] - MeanOfWheelsets(position, vehicle_.Wheelsets())) +
+                         std::cos(angle) * offset_forward_m + std::sin(angle) * offset_up_m;
   const double up = height_m_[body] + exaggeration_ * (position.z[body] - at_rest_.z[body]) +
                     std::cos(angle) * offset_up_m - std::sin(angle) * offset_forward_m;
   return {0.5 * (area_.left + area_.right) - scale_ * forward, rail_ + scale_ * up};
@@ -122,8 +120,7 @@ void CloseUp::Draw(Drawing& drawing, const train_dynamics::Track& track, const S
   DrawCouplerForce(drawing, position, 1.0, sight.front_force_n);
   DrawCouplerForce(drawing, position, -1.0, sight.rear_force_n);
   if (sight.detail == nullptr) return;
-  drawing.Write({left, area_.bottom + kLoadText}, Align::kLeft, layout::kSmallText, "wheel load",
-                palette::kDark);
+  drawing.Write({left, area_.bottom + kLoadText}, Align::kLeft, layout::kSmallText, "wheel load", palette::kDark);
   drawing.Write({left, area_.bottom + kSlipText}, Align::kLeft, layout::kSmallText, "slip", palette::kDark);
   DrawContactForces(drawing, *sight.detail);
 }
@@ -134,8 +131,7 @@ void CloseUp::DrawRail(Drawing& drawing, const train_dynamics::Track& track, dou
   const auto rail_at = [&](int piece) {
     const double forward = half_m * (1.0 - 2.0 * piece / kPieces);
     const double height = train_dynamics::RailHeightAt(track, centre_m + forward).height;
-    return Point{0.5 * (area_.left + area_.right) - scale_ * forward,
-                 rail_ + scale_ * exaggeration_ * height};
+    return Point{0.5 * (area_.left + area_.right) - scale_ * forward, rail_ + scale_ * exaggeration_ * height};
   };
   drawing.On(Layer::kLine);
   for (int i = 0; i < kPieces; ++i) {
@@ -170,21 +166,15 @@ void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) c
   const double coupler = vehicle_.coupler_height_m - vehicle_.LoadedCarbody().cg_height_m;
   for (const double end : {1.0, -1.0}) {
     const double inner = end * (half - 0.8), outer = end * 0.5 * vehicle_.length_m;
-    outline(
-        kCarbody,
-        {{inner, coupler - 0.12}, {outer, coupler - 0.12}, {outer, coupler + 0.12}, {inner, coupler + 0.12}},
-        palette::kAxis, Layer::kBack);
+    outline(kCarbody,
+            {{inner, coupler - 0.12}, {outer, coupler - 0.12}, {outer, coupler + 0.12}, {inner, coupler + 0.12}},
+            palette::kAxis, Layer::kBack);
   }
   const double plate = vehicle_.centre_plate.height_m - vehicle_.bolster.cg_height_m;
   const double axle = vehicle_.half_wheelset_spacing_m;
   for (int bogie = 0; bogie < train_dynamics::kBogies; ++bogie) {
     outline(kFrontBolster + bogie,
-            {{0.28, -0.2},
-             {0.28, plate},
-             {0.16, plate + 0.35},
-             {-0.16, plate + 0.35},
-             {-0.28, plate},
-             {-0.28, -0.2}},
+            {{0.28, -0.2}, {0.28, plate}, {0.16, plate + 0.35}, {-0.16, plate + 0.35}, {-0.28, plate}, {-0.28, -0.2}},
             palette::kAxis, Layer::kTop);
     outline(kFrontFrame + bogie,
             {{axle + 0.18, -0.08},
@@ -199,8 +189,7 @@ void CloseUp::DrawBodies(Drawing& drawing, const Bodies& position, Color body) c
   }
 }
 
-void CloseUp::DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides,
-                           bool locked) const {
+void CloseUp::DrawWheelset(Drawing& drawing, const Bodies& position, int wheelset, bool slides, bool locked) const {
   const int body = kWheelset1 + wheelset;
   const double radius = vehicle_.wheelset.wheel_radius_m;
   const Point axle = PlaceOf(position, body, 0.0, 0.0);
@@ -239,8 +228,7 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     const Point tread = {axle.right + side, axle.up};
     arrow(tread, {tread.right, tread.up + shoe}, palette::kPurple);
 
-    drawing.Write({contact.right, area_.bottom + kLoadText}, Align::kCentre, layout::kSmallText,
-                  Kilonewtons(load));
+    drawing.Write({contact.right, area_.bottom + kLoadText}, Align::kCentre, layout::kSmallText, Kilonewtons(load));
     const bool locked = IsLocked(detail, i);
     drawing.Write({contact.right, area_.bottom + kSlipText}, Align::kCentre, layout::kSmallText,
                   locked ? "LOCKED" : Rounded(100.0 * detail.output.creepage[i], 2) + " %",

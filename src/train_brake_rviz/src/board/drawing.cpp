@@ -48,8 +48,7 @@ void Drawing::Polygon(const std::vector<Point>& corners, Color color) {
 }
 
 void Drawing::Box(const Rectangle& box, Color color) {
-  Polygon({{box.left, box.bottom}, {box.right, box.bottom}, {box.right, box.top}, {box.left, box.top}},
-          color);
+  Polygon({{box.left, box.bottom}, {box.right, box.bottom}, {box.right, box.top}, {box.left, box.top}}, color);
 }
 
 void Drawing::Frame(const Rectangle& box, double width, Color color) {

@@ -6,8 +6,8 @@
 namespace train_brake_rviz {
 Elevation::Elevation(const train_dynamics::TrackParams& track) : track_(track), grades_(track.Grades()) {
   for (size_t i = 0; i < grades_.size(); ++i) {
-    height_m_.push_back(
-        i == 0 ? 0.0 : height_m_[i - 1] + grades_[i - 1].value * (grades_[i].from_m - grades_[i - 1].from_m));
+    height_m_.push_back(i == 0 ? 0.0
+                               : height_m_[i - 1] + grades_[i - 1].value * (grades_[i].from_m - grades_[i - 1].from_m));
   }
   const double at_zero = (*this)(0.0) - train_dynamics::RailHeightAt(track_, 0.0).height;
   for (double& height : height_m_) height -= at_zero;
@@ -22,8 +22,8 @@ double Elevation::operator()(double position_m) const {
   return dips + height_m_[i] + grades_[i].value * (position_m - grades_[i].from_m);
 }
 
-double FittingExaggeration(const Elevation& elevation, double begin_m, double end_m, double window_m,
-                           double scale, double room) {
+double FittingExaggeration(const Elevation& elevation, double begin_m, double end_m, double window_m, double scale,
+                           double room) {
   constexpr int kPerWindow = 400, kMostSamples = 20000;
   const double length = end_m - begin_m + window_m;
   const double step = std::max(window_m / kPerWindow, length / kMostSamples);

@@ -21,15 +21,13 @@ Color Between(const std::array<Color, n>& colors, double place) {
 }  // namespace
 
 Color Diverging(double value) {
-  static constexpr std::array<Color, 7> kColors = {Rgb(0x00304b), palette::kBlue, Rgb(0x9fd0ea),
-                                                   Rgb(0xf7f7f7), Rgb(0xf6b98c),  palette::kVermillion,
-                                                   Rgb(0x5f2a00)};
+  static constexpr std::array<Color, 7> kColors = {Rgb(0x00304b), palette::kBlue,       Rgb(0x9fd0ea), Rgb(0xf7f7f7),
+                                                   Rgb(0xf6b98c), palette::kVermillion, Rgb(0x5f2a00)};
   return Between(kColors, 0.5 * (value + 1.0));
 }
 
 Color Sequential(double value) {
-  static constexpr std::array<Color, 4> kColors = {Rgb(0xf7f7f7), Rgb(0x9fd0ea), palette::kBlue,
-                                                   Rgb(0x00304b)};
+  static constexpr std::array<Color, 4> kColors = {Rgb(0xf7f7f7), Rgb(0x9fd0ea), palette::kBlue, Rgb(0x00304b)};
   return Between(kColors, value);
 }
 

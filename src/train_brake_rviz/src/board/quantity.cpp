@@ -18,8 +18,7 @@ std::vector<double> VehicleCouplerForces(const Snapshot& snapshot) {
 
 const std::vector<Quantity>& Quantities() {
   static const std::vector<Quantity> kQuantities = {
-      {"coupler_force", "coupler force", "kN", 1e-3, 100.0, true, "compression", "tension",
-       VehicleCouplerForces},
+      {"coupler_force", "coupler force", "kN", 1e-3, 100.0, true, "compression", "tension", VehicleCouplerForces},
       {"pressure", "cylinder pressure", "kPa", 1e-3, 100.0, false, "", "",
        [](const Snapshot& s) { return s.cylinder_pressure_pa; }},
       {"pipe_pressure", "brake pipe pressure", "kPa", 1e-3, 100.0, false, "", "",

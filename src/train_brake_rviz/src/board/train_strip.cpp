@@ -68,8 +68,7 @@ void TrainStrip::DrawVehicles(Drawing& drawing, const Abscissa& abscissa, const 
   }
 }
 
-void TrainStrip::DrawLocomotives(Drawing& drawing, const Abscissa& abscissa,
-                                 const std::vector<double>& edge_m,
+void TrainStrip::DrawLocomotives(Drawing& drawing, const Abscissa& abscissa, const std::vector<double>& edge_m,
                                  const std::vector<int>& locomotives) const {
   constexpr double kGap = 0.5;  // between two names
   const std::string name = "locomotive";
@@ -79,8 +78,7 @@ void TrainStrip::DrawLocomotives(Drawing& drawing, const Abscissa& abscissa,
   for (const int i : locomotives) {
     const double middle_m = 0.5 * (edge_m[i] + edge_m[i + 1]);
     const double middle = abscissa(middle_m), roof = Rail(abscissa, middle_m) + kVehicleHeight;
-    drawing.Triangle({middle - 0.7, roof + 1.1}, {middle, roof + 0.1}, {middle + 0.7, roof + 1.1},
-                     palette::kDark);
+    drawing.Triangle({middle - 0.7, roof + 1.1}, {middle, roof + 0.1}, {middle + 0.7, roof + 1.1}, palette::kDark);
     const double centre = std::max(middle, area_.left + half);
     if (centre - half < free) continue;
     drawing.Write({centre, roof + 2.1}, Align::kCentre, layout::kSmallText, name, palette::kDark);
@@ -95,9 +93,8 @@ void TrainStrip::DrawZoom(Drawing& drawing, const Abscissa& abscissa, double fro
   drawing.On(Layer::kFront);
   drawing.Frame({left, right, rail, rail + kVehicleHeight + 0.6}, layout::kThick, palette::kInk);
   drawing.On(Layer::kBeam);
-  drawing.Polygon(
-      {{left, rail}, {close_up.left, close_up.top}, {close_up.right, close_up.top}, {right, rail}},
-      palette::kShade);
+  drawing.Polygon({{left, rail}, {close_up.left, close_up.top}, {close_up.right, close_up.top}, {right, rail}},
+                  palette::kShade);
 }
 
 }  // namespace train_brake_rviz

@@ -16,8 +16,8 @@ void PrepareProcess();
 
 /// Text of unknown origin (names, paths, what others report) as it may be shown on a terminal and written to a log.
 ///
-/// Each control character but line feeds and tabs becomes '?': ASCII's, Unicode's second set (U+0080 to U+009F), and those
-/// that turn the direction of writing (U+202A to U+202E, U+2066 to U+2069). So do bytes that are not UTF-8.
+/// Each control character but line feeds and tabs becomes '?': ASCII's, Unicode's second set (U+0080 to U+009F), and
+/// those that turn the direction of writing (U+202A to U+202E, U+2066 to U+2069). So do bytes that are not UTF-8.
 std::string Presentable(const std::string& text);
 
 /// Text as one word of a shell's command: as it is, or quoted where a shell would split or change it.

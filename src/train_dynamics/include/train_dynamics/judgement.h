@@ -12,8 +12,7 @@ namespace train_dynamics {
 /// A rule between the parts of a configuration that does not hold.
 struct BrokenRule {
   std::string key, text;
-  std::vector<std::string>
-      reads;  ///< paths of what it reads besides `key`; "[]" in a path: all entries of a list
+  std::vector<std::string> reads;  ///< paths of what it reads besides `key`; "[]" in a path: all entries of a list
 };
 
 /// Tells a visitor of them.

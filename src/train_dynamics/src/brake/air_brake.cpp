@@ -28,9 +28,7 @@ enum class Effect {
   kGraduatedRelease,
 };
 
-bool IsRelease(Effect effect) {
-  return effect == Effect::kFullRelease || effect == Effect::kGraduatedRelease;
-}
+bool IsRelease(Effect effect) { return effect == Effect::kFullRelease || effect == Effect::kGraduatedRelease; }
 
 /// How strong a command is beside others of the same time: its reduction, a release 0, an emergency infinite.
 double StrengthOf(const BrakeCommand& command) {
@@ -100,9 +98,9 @@ Course CourseOf(const BrakeCommand& command, Effect effect, const AirBrakeParams
   const ServiceApplicationParams& s = params.service;
   const double reduction = command.reduction_kpa;
   if (reduction < s.reduction_kpa.front() || reduction > s.reduction_kpa.back()) {
-    throw std::invalid_argument("reduction_kpa must be in [" + std::to_string(s.reduction_kpa.front()) +
-                                ", " + std::to_string(s.reduction_kpa.back()) +
-                                "], the measured range, got " + std::to_string(reduction));
+    throw std::invalid_argument("reduction_kpa must be in [" + std::to_string(s.reduction_kpa.front()) + ", " +
+                                std::to_string(s.reduction_kpa.back()) + "], the measured range, got " +
+                                std::to_string(reduction));
   }
   const double wave_speed_mps = effect == Effect::kGraduatedRelease
                                     ? release.wave_speed_mps
@@ -120,12 +118,10 @@ std::vector<WaveSource> SourcesOf(const AirBrakeParams& params, bool is_release,
     const int at = VehicleIndex(source.vehicle, vehicles);
     if (at < 0) {
       throw std::invalid_argument("brake source " + source.name + " stands at vehicle " +
-                                  std::to_string(source.vehicle) + ", but the train has " +
-                                  std::to_string(vehicles));
+                                  std::to_string(source.vehicle) + ", but the train has " + std::to_string(vehicles));
     }
     if (is_release && !source.releases) continue;
-    sources.push_back(
-        {vehicle_positions_m[at], is_release ? source.release_delay_s : source.application_delay_s});
+    sources.push_back({vehicle_positions_m[at], is_release ? source.release_delay_s : source.application_delay_s});
   }
   if (sources.empty()) throw std::invalid_argument("no brake source releases the brakes");
   return sources;
@@ -133,8 +129,7 @@ std::vector<WaveSource> SourcesOf(const AirBrakeParams& params, bool is_release,
 
 }  // namespace
 
-std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands,
-                                                    int vehicles) const {
+std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
   std::vector<BrokenRule> broken;
   constexpr std::size_t kMostArrivals = 10000000;  // a second and half a gigabyte
   const std::size_t per_command = sources.size() * static_cast<std::size_t>(vehicles);
@@ -147,8 +142,8 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
     return broken;
   }
   const std::vector<double>& measured = service.reduction_kpa;
-  const bool releases = std::any_of(sources.begin(), sources.end(),
-                                    [](const BrakeSourceParams& source) { return source.releases; });
+  const bool releases =
+      std::any_of(sources.begin(), sources.end(), [](const BrakeSourceParams& source) { return source.releases; });
   const std::vector<Obeyed> obeyed = Obey(*this, commands);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const BrakeCommand& command = commands[i];
@@ -169,14 +164,12 @@ std::vector<BrokenRule> AirBrakeParams::BrokenRules(const std::vector<BrakeComma
     const BrakeSourceParams& source = sources[i];
     if (VehicleIndex(source.vehicle, vehicles) >= 0) continue;
     const std::string which = source.name.empty() ? "" : " (" + source.name + ")";
-    broken.push_back(
-        {"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {kVehicleCounts}});
+    broken.push_back({"brake.sources" + Index(i) + ".vehicle", VehicleRule(vehicles) + which, {kVehicleCounts}});
   }
   return broken;
 }
 
-std::vector<Warning> AirBrakeParams::Warnings(const std::vector<BrakeCommand>& commands,
-                                              int /*vehicles*/) const {
+std::vector<Warning> AirBrakeParams::Warnings(const std::vector<BrakeCommand>& commands, int /*vehicles*/) const {
   std::vector<Warning> warnings;
   const std::vector<Obeyed> obeyed = Obey(*this, commands);
   std::size_t re_applications = 0, first = 0;
@@ -189,21 +182,18 @@ std::vector<Warning> AirBrakeParams::Warnings(const std::vector<BrakeCommand>& c
     const std::string text = other.time_s == commands[i].time_s
                                  ? because + " at the same time is at least as strong"
                                  : "the emergency of " + because + " holds until a release at " +
-                                       ShortestDecimal(other.time_s + emergency.blocking_time_s) +
-                                       " s or later";
-    warnings.push_back(
-        {"commands" + Index(i) + ".time_s",
-         "commands" + Index(i) + " has no effect: " + text +
-             (other.time_s == commands[i].time_s ? "" : " (brake.emergency.blocking_time_s)")});
+                                       ShortestDecimal(other.time_s + emergency.blocking_time_s) + " s or later";
+    warnings.push_back({"commands" + Index(i) + ".time_s",
+                        "commands" + Index(i) + " has no effect: " + text +
+                            (other.time_s == commands[i].time_s ? "" : " (brake.emergency.blocking_time_s)")});
   }
   if (re_applications > 0) {
     const std::string more =
         re_applications > 1 ? " (and " + std::to_string(re_applications - 1) + " more after it)" : "";
-    warnings.push_back(
-        {"commands" + Index(first) + ".time_s",
-         "commands" + Index(first) + more +
-             " applies the brake again after a release: the empirical brake has no reservoirs that "
-             "must be recharged, so that it gives the full pressure where a real train has less"});
+    warnings.push_back({"commands" + Index(first) + ".time_s",
+                        "commands" + Index(first) + more +
+                            " applies the brake again after a release: the empirical brake has no reservoirs that "
+                            "must be recharged, so that it gives the full pressure where a real train has less"});
   }
   return warnings;
 }
@@ -231,9 +221,8 @@ AirBrake::AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>
 }
 
 void AirBrake::Command(const BrakeCommand& command) {
-  const auto at =
-      std::upper_bound(commands_.begin(), commands_.end(), command,
-                       [](const BrakeCommand& a, const BrakeCommand& b) { return a.time_s < b.time_s; });
+  const auto at = std::upper_bound(commands_.begin(), commands_.end(), command,
+                                   [](const BrakeCommand& a, const BrakeCommand& b) { return a.time_s < b.time_s; });
   const std::vector<BrakeCommand> before = commands_;
   commands_.insert(at, command);
   try {
@@ -254,8 +243,7 @@ void AirBrake::MakePhases() {
     const Course course = CourseOf(commands_[k], effect, params_);
     const std::vector<WaveSource> sources = SourcesOf(params_, IsRelease(effect), positions_m_);
     for (std::size_t i = 0; i < positions_m_.size(); ++i) {
-      const auto [arrival, distance] =
-          FirstWave(commands_[k].time_s, positions_m_[i], sources, course.wave_speed_mps);
+      const auto [arrival, distance] = FirstWave(commands_[k].time_s, positions_m_[i], sources, course.wave_speed_mps);
       std::vector<Phase>& phases = vehicle_phases_[i];
       while (phases.size() > 1 && phases.back().begin_s >= arrival) phases.pop_back();  // overtaken
       const double begin_pa = phases.back().PressureAt(arrival);

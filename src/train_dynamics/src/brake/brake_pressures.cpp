@@ -51,12 +51,10 @@ void BrakePressures::PressuresAt(double time_s, std::vector<double>& pressure_pa
   const BrakePhases phases = brake_.Phases();
   pressure_pa.resize(phases.stride);  // whole packs of lanes
   if (by_law_) {
-    BestBrakeKernels().cylinder_pressures(phases, static_cast<double>(at) * dt_s_, phases.stride,
-                                          pressure_pa.data());
+    BestBrakeKernels().cylinder_pressures(phases, static_cast<double>(at) * dt_s_, phases.stride, pressure_pa.data());
   } else {
     BestBrakeKernels().close_cylinder_gaps(static_cast<int>(at - at_), phases.stride,
-                                           {target_pa_.data(), gap_pa_.data(), decay_.data()},
-                                           pressure_pa.data());
+                                           {target_pa_.data(), gap_pa_.data(), decay_.data()}, pressure_pa.data());
     at_ = at;
   }
   pressure_pa.resize(brake_.vehicles());

@@ -6,8 +6,8 @@
 
 namespace train_dynamics {
 
-LocomotiveBrakes::LocomotiveBrakes(const LocomotiveBrakeParams& params,
-                                   const std::vector<Locomotive>& locomotives, int vehicles)
+LocomotiveBrakes::LocomotiveBrakes(const LocomotiveBrakeParams& params, const std::vector<Locomotive>& locomotives,
+                                   int vehicles)
     : params_(params), vehicles_(vehicles) {
   for (const Locomotive& locomotive : locomotives) {
     Brake brake;
@@ -21,9 +21,8 @@ LocomotiveBrakes::LocomotiveBrakes(const LocomotiveBrakeParams& params,
 std::vector<LocomotiveBrakes::BailOff> LocomotiveBrakes::Command(const LocomotiveBrakeCommand& command) {
   std::vector<BailOff> bail_offs;
   for (Brake& brake : brakes_) {
-    const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(), [&](int number) {
-      return VehicleIndex(number, vehicles_) == brake.vehicle;
-    });
+    const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(),
+                                      [&](int number) { return VehicleIndex(number, vehicles_) == brake.vehicle; });
     if (!command.vehicles.empty() && !is_named) continue;
     const double at_s = command.time_s + brake.command_delay_s;
     if (command.kind == LocomotiveBrakeCommandKind::kBailOff) {
@@ -49,8 +48,7 @@ double LocomotiveBrakes::PressureOf(const Brake& brake, double time_s) const {
 void LocomotiveBrakes::Act(double time_s, std::vector<double>& pressure_pa) {
   if (!is_used_) return;
   for (Brake& brake : brakes_) {
-    for (; brake.obeyed < brake.orders.size() && brake.orders[brake.obeyed].time_s <= time_s;
-         ++brake.obeyed) {
+    for (; brake.obeyed < brake.orders.size() && brake.orders[brake.obeyed].time_s <= time_s; ++brake.obeyed) {
       const Order& order = brake.orders[brake.obeyed];
       brake.from_pa = PressureOf(brake, order.time_s);
       brake.from_s = order.time_s;

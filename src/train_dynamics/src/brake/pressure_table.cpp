@@ -22,8 +22,7 @@ PressureTable::PressureTable(std::vector<double> time_s, std::vector<std::vector
     const std::vector<double>& column = pressure_pa_[i];
     if (column.size() != time_s_.size()) throw std::invalid_argument("a pressure table must be rectangular");
     if (!all_finite(column) || *std::min_element(column.begin(), column.end()) < 0.0) {
-      throw std::invalid_argument("the pressures of vehicle " + std::to_string(i + 1) +
-                                  " must be finite and >= 0");
+      throw std::invalid_argument("the pressures of vehicle " + std::to_string(i + 1) + " must be finite and >= 0");
     }
   }
 }

@@ -40,12 +40,11 @@ void TakeParts(std::vector<KeyDescription>& keys, std::vector<FileKind>& kinds) 
       key.keys = std::move(below);
       continue;
     }
-    const bool is_known = std::any_of(kinds.begin(), kinds.end(),
-                                      [&key](const FileKind& kind) { return kind.folder == key.folder; });
+    const bool is_known =
+        std::any_of(kinds.begin(), kinds.end(), [&key](const FileKind& kind) { return kind.folder == key.folder; });
     if (is_known) continue;
     const std::size_t index = kinds.size();
-    kinds.push_back(
-        {NameOf(key.folder), key.folder, MeaningOf(key.folder, key.meaning), key.may_be_table, {}});
+    kinds.push_back({NameOf(key.folder), key.folder, MeaningOf(key.folder, key.meaning), key.may_be_table, {}});
     TakeParts(below, kinds);
     kinds[index].keys = std::move(below);
   }

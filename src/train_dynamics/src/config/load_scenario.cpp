@@ -109,21 +109,19 @@ BrakeSystem ReadPressureTable(const std::string& file, int vehicles, double dura
     constexpr std::size_t kListed = 3;
     const std::vector<std::string> others = UnusedColumns(table, vehicles);
     errors.Add(table.file, table.header_line, "",
-               "has no column" + std::string(missing.size() == 1 ? " " : "s ") +
-                   strict_config::Join(missing, kListed) + ": of " + std::to_string(vehicles) + " vehicles " +
-                   std::to_string(missing.size()) + " have no pressures" +
+               "has no column" + std::string(missing.size() == 1 ? " " : "s ") + strict_config::Join(missing, kListed) +
+                   ": of " + std::to_string(vehicles) + " vehicles " + std::to_string(missing.size()) +
+                   " have no pressures" +
                    (others.empty() ? "" : "; not used: " + strict_config::Join(others, kListed)));
   }
   ThrowIfAny(errors);
   const auto complain = [&](std::size_t row, const std::string& key, double value, const std::string& rule) {
-    errors.Add(table.file, table.row_lines[row], key,
-               rule + ", got " + strict_config::ShortestDecimal(value));
+    errors.Add(table.file, table.row_lines[row], key, rule + ", got " + strict_config::ShortestDecimal(value));
   };
   for (std::size_t row = 0; row < time->size(); ++row) {
     if (row > 0 && (*time)[row] <= (*time)[row - 1]) {
       complain(row, "time_s", (*time)[row],
-               "must be later than that of the row before, " +
-                   strict_config::ShortestDecimal((*time)[row - 1]) + " s");
+               "must be later than that of the row before, " + strict_config::ShortestDecimal((*time)[row - 1]) + " s");
     }
     constexpr double kLargest = 3e6;  // see PlausibleSize
     for (int i = 0; i < vehicles; ++i) {
@@ -193,8 +191,8 @@ std::vector<std::pair<std::string, double>> JudgeWagons(const ScenarioParams& sc
     if (!judged.insert(Write(vehicle)).second) continue;
     const std::string path = "train.consist[" + std::to_string(i) + "].vehicle";
     if (!MakesWagon(vehicle, path + ".", rules)) continue;
-    const double stable_step_s = WithBogieVehicle(
-        vehicle, [](const auto& wagon) { return AnalyseModes(wagon).largest_stable_step_s; });
+    const double stable_step_s =
+        WithBogieVehicle(vehicle, [](const auto& wagon) { return AnalyseModes(wagon).largest_stable_step_s; });
     stable_steps.emplace_back(vehicle.name.empty() ? path : vehicle.name, stable_step_s);
   }
   const auto stiffest = std::min_element(stable_steps.begin(), stable_steps.end(),
@@ -214,15 +212,12 @@ bool IsScenario(const std::string& file) {
   const strict_config::NodePtr root = strict_config::PartLibrary({}, unread).Open(file, "");
   if (!root) return false;
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  return folder.filename() == "scenarios" || root->Find("train") || root->Find("track") ||
-         root->Find("duration_s");
+  return folder.filename() == "scenarios" || root->Find("train") || root->Find("track") || root->Find("duration_s");
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> PartFolders() {
-  return strict_config::FoldersInEnvironment(kPartsVariable);
-}
+std::vector<std::filesystem::path> PartFolders() { return strict_config::FoldersInEnvironment(kPartsVariable); }
 
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides) {
   std::optional<Consist> consist;
@@ -262,8 +257,7 @@ LoadedScenario LoadScenario(const std::string& file, const std::vector<std::stri
 LoadedScenario LoadScenarioText(const std::string& text, const std::string& label) {
   ErrorList errors;
   ScenarioParams params = LoadText<ScenarioParams>(text, label, errors);
-  if (!params.pressure_table.empty())
-    errors.Add(label, 0, "pressure_table", "names a file, which is not at hand");
+  if (!params.pressure_table.empty()) errors.Add(label, 0, "pressure_table", "names a file, which is not at hand");
   ThrowIfAny(errors);
   Consist consist(params.train);
   try {

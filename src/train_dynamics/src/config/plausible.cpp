@@ -101,8 +101,7 @@ bool EndsIn(const std::string& path, const std::string& ending) {
 Range PlausibleSize(const std::string& path) {
   const Size* longest = nullptr;
   for (const Size& size : kSizes) {
-    if (EndsIn(path, size.ending) &&
-        (longest == nullptr || std::strlen(size.ending) > std::strlen(longest->ending)))
+    if (EndsIn(path, size.ending) && (longest == nullptr || std::strlen(size.ending) > std::strlen(longest->ending)))
       longest = &size;
   }
   if (longest == nullptr) return {0.0, kAny, false, true};

@@ -37,8 +37,7 @@ ContactEllipse HertzEllipse(const HertzParams& params, double wheel_radius_m) {
   const double lateral = 0.5 * (1.0 / params.wheel_lateral_radius_m + 1.0 / params.rail_lateral_radius_m);
   const double small = std::min(longitudinal, lateral);
   const double ratio = small / std::max(longitudinal, lateral);
-  const double modulus =
-      params.youngs_modulus_pa / (2.0 * (1.0 - params.poisson_ratio * params.poisson_ratio));
+  const double modulus = params.youngs_modulus_pa / (2.0 * (1.0 - params.poisson_ratio * params.poisson_ratio));
 
   // Near the circle (K - E) / e^2 tends to pi / 4 and the axes differ by less than e^2 / 2.
   double major_cubed = 3.0 / (8.0 * modulus * small);

@@ -7,8 +7,7 @@ double ForceCurveParams::At(double at_m) const {
   if (next == travel_m.begin()) return force_n.front();
   if (next == travel_m.end()) return force_n.back();
   const auto i = static_cast<std::size_t>(next - travel_m.begin());
-  return force_n[i - 1] +
-         (force_n[i] - force_n[i - 1]) * (at_m - travel_m[i - 1]) / (travel_m[i] - travel_m[i - 1]);
+  return force_n[i - 1] + (force_n[i] - force_n[i - 1]) * (at_m - travel_m[i - 1]) / (travel_m[i] - travel_m[i - 1]);
 }
 
 double ForceCurveParams::SteepestSlope() const {
@@ -35,11 +34,7 @@ bool HysteresisParams::UnloadsAboveLoading() const {
 }
 
 ForceCurve::ForceCurve(const ForceCurveParams& params)
-    : segments(static_cast<int>(params.travel_m.size()) - 1),
-      begin_m{},
-      begin_n{},
-      length_m{},
-      slope_n_per_m{} {
+    : segments(static_cast<int>(params.travel_m.size()) - 1), begin_m{}, begin_n{}, length_m{}, slope_n_per_m{} {
   for (int i = 0; i <= segments; ++i) {
     begin_m[i] = params.travel_m[i];
     begin_n[i] = params.force_n[i];

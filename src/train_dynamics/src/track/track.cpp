@@ -169,8 +169,7 @@ void TrackParams::JudgeHeights(std::vector<BrokenRule>& broken) const {
     if (std::abs(grade) <= kSteepest) return;
     broken.push_back({list + Index(i) + ".height_m",
                       "must not make a grade steeper than 20 % from the height before, " +
-                          ShortestDecimal(before.height_m) + " m at " + ShortestDecimal(before.position_m) +
-                          " m",
+                          ShortestDecimal(before.height_m) + " m at " + ShortestDecimal(before.position_m) + " m",
                       {list + Index(i), list + Index(last)}});
   };
   for (std::size_t i = 1; i < heights.size(); ++i) judge("heights", i - 1, heights[i - 1], i, heights[i]);
@@ -195,15 +194,13 @@ void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
   const auto judge = [&](const char* key, const auto& has, bool is_given, const char* other) {
     const std::optional<std::size_t> first = first_with(has);
     if (!first || !is_given) return;
-    broken.push_back(
-        {"points" + Index(*first) + "." + key, std::string("must not stand beside ") + other, {}});
+    broken.push_back({"points" + Index(*first) + "." + key, std::string("must not stand beside ") + other, {}});
   };
   using Point = RoutePointParams;
   const auto has_grade = [](const Point& p) { return p.Grade().has_value(); };
   const auto has_height = [](const Point& p) { return p.height_m.has_value(); };
   const std::optional<std::size_t> first_grade = first_with(has_grade);
-  const char* const grade_key =
-      first_grade && points[*first_grade].grade_percent ? "grade_percent" : "grade_permille";
+  const char* const grade_key = first_grade && points[*first_grade].grade_percent ? "grade_percent" : "grade_permille";
   judge(grade_key, has_grade, !grades.empty(), "grades");
   judge(grade_key, has_grade, !heights.empty(), "heights");
   judge("height_m", has_height, !grades.empty(), "grades");
@@ -217,14 +214,12 @@ void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
   judge(
       "friction_coefficient", [](const Point& p) { return p.friction_coefficient.has_value(); },
       !friction_patches.empty(), "friction_patches");
-  if (!heights.empty() && !grades.empty())
-    broken.push_back({"heights", "must not stand beside grades", {"grades"}});
+  if (!heights.empty() && !grades.empty()) broken.push_back({"heights", "must not stand beside grades", {"grades"}});
 }
 
 void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
-  const bool are_spans = std::all_of(dips.begin(), dips.end(), [](const DipParams& dip) {
-    return std::isfinite(dip.from_m) && dip.length_m > 0.0;
-  });
+  const bool are_spans = std::all_of(
+      dips.begin(), dips.end(), [](const DipParams& dip) { return std::isfinite(dip.from_m) && dip.length_m > 0.0; });
   if (!are_spans) return;
   std::size_t overlaps = 0;
   Sweep(SpansOf(dips), [&](double at_m, const std::set<int>& covering) {
@@ -232,8 +227,8 @@ void TrackParams::JudgeDips(std::vector<BrokenRule>& broken) const {
     if (overlaps <= kMostDipOverlaps) return true;
     broken.push_back({"dips" + Index(*covering.rbegin()),
                       "must not overlap so many others: up to " + ShortestDecimal(at_m) +
-                          " m the stretches between ends of dips lie in more than " +
-                          std::to_string(kMostDipOverlaps) + " dips in all",
+                          " m the stretches between ends of dips lie in more than " + std::to_string(kMostDipOverlaps) +
+                          " dips in all",
                       {"dips"}});
     return false;
   });
@@ -248,25 +243,24 @@ void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
     if (one.End() <= next.Begin() + kRounding) continue;
     // The ramp that is there is named before a sharp end.
     const SurfaceChange& named = next.ramp_m > 0.0 ? next : one;
-    broken.push_back(
-        {"friction_patches" + Index(named.patch) + ".ramp_length_m",
-         "must leave room to the next change of the surface: half of a ramp lies on each side "
-         "of an end, and the ones "
-         "at " +
-             ShortestDecimal(one.at_m) + " m (" + ShortestDecimal(one.ramp_m) + " m long) and " +
-             ShortestDecimal(next.at_m) + " m (" + ShortestDecimal(next.ramp_m) + " m) overlap",
-         {"friction_patches[].from_m", "friction_patches[].to_m", "friction_patches[].ramp_length_m"}});
+    broken.push_back({"friction_patches" + Index(named.patch) + ".ramp_length_m",
+                      "must leave room to the next change of the surface: half of a ramp lies on each side "
+                      "of an end, and the ones "
+                      "at " +
+                          ShortestDecimal(one.at_m) + " m (" + ShortestDecimal(one.ramp_m) + " m long) and " +
+                          ShortestDecimal(next.at_m) + " m (" + ShortestDecimal(next.ramp_m) + " m) overlap",
+                      {"friction_patches[].from_m", "friction_patches[].to_m", "friction_patches[].ramp_length_m"}});
   }
 }
 
-// ---- lists or points -------------------------------------------------------------------------------------------------
+// ---- lists or points
+// -------------------------------------------------------------------------------------------------
 
 namespace {
 
 /// The value that each point gives from its position on.
 template <class Value>
-void AddSteps(const std::vector<RoutePointParams>& points, const Value& value,
-              std::vector<StepValue>& steps) {
+void AddSteps(const std::vector<RoutePointParams>& points, const Value& value, std::vector<StepValue>& steps) {
   for (const RoutePointParams& point : points) {
     if (const std::optional<double> here = value(point)) steps.push_back({point.Position(), *here});
   }
@@ -353,9 +347,8 @@ std::vector<StationParams> TrackParams::Stations() const {
   for (const RoutePointParams& point : points) {
     if (!point.station.empty()) all.push_back({point.station, point.Position()});
   }
-  std::stable_sort(all.begin(), all.end(), [](const StationParams& a, const StationParams& b) {
-    return a.position_m < b.position_m;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const StationParams& a, const StationParams& b) { return a.position_m < b.position_m; });
   return all;
 }
 
@@ -475,8 +468,7 @@ RailHeight<double> RailHeightAt(const Track& track, double position_m) { return 
 AdhesionParams Track::SurfaceOf(int patch, const AdhesionParams& vehicle) const {
   if (patch < 0) return vehicle;
   AdhesionParams surface = patches_[patch].adhesion.value_or(vehicle);
-  if (patches_[patch].friction_coefficient)
-    surface.friction_coefficient = *patches_[patch].friction_coefficient;
+  if (patches_[patch].friction_coefficient) surface.friction_coefficient = *patches_[patch].friction_coefficient;
   return surface;
 }
 
@@ -494,8 +486,7 @@ Track::SurfaceStretch Track::SurfaceFrom(double position_m, const AdhesionParams
   const AdhesionParams* const shape = ShapeOf(piece, vehicle);
   const bool has_own_friction = piece.before >= 0 && patches_[piece.before].friction_coefficient;
   return {surface_pieces_[number],
-          has_own_friction ? *patches_[piece.before].friction_coefficient : shape->friction_coefficient,
-          shape};
+          has_own_friction ? *patches_[piece.before].friction_coefficient : shape->friction_coefficient, shape};
 }
 
 AdhesionParams Track::SurfaceAt(double position_m, const AdhesionParams& vehicle) const {
@@ -507,9 +498,8 @@ AdhesionParams Track::SurfaceAt(double position_m, const AdhesionParams& vehicle
   const Stretch ramp = surface_pieces_[number];
   const double share = (position_m - ramp.from_m) / (ramp.to_m - ramp.from_m);
   for (double AdhesionParams::*const field :
-       {&AdhesionParams::friction_coefficient, &AdhesionParams::friction_ratio,
-        &AdhesionParams::friction_decay_s_per_m, &AdhesionParams::adhesion_reduction,
-        &AdhesionParams::slip_reduction}) {
+       {&AdhesionParams::friction_coefficient, &AdhesionParams::friction_ratio, &AdhesionParams::friction_decay_s_per_m,
+        &AdhesionParams::adhesion_reduction, &AdhesionParams::slip_reduction}) {
     surface.*field += share * (behind.*field - surface.*field);
   }
   return surface;
@@ -525,8 +515,7 @@ const AdhesionParams* Track::SurfacesAt(int count, const double* position_m, con
     values[2 * count + i] = surface.friction_decay_s_per_m;
     values[3 * count + i] = surface.adhesion_reduction;
     values[4 * count + i] = surface.slip_reduction;
-    const AdhesionParams* const of_this =
-        ShapeOf(surfaces_[surface_pieces_.NumberAt(position_m[i])], vehicle);
+    const AdhesionParams* const of_this = ShapeOf(surfaces_[surface_pieces_.NumberAt(position_m[i])], vehicle);
     shape = i == 0 || shape == of_this ? of_this : nullptr;
   }
   return shape;

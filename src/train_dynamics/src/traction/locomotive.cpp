@@ -9,8 +9,7 @@ bool TractionParams::Drives(int wheelset) const {
          std::find(driven_wheelsets.begin(), driven_wheelsets.end(), wheelset + 1) != driven_wheelsets.end();
 }
 
-double WantedEffort(const TractionParams& p, const NotchCommand& command, double speed_mps,
-                    double driven_weight_n) {
+double WantedEffort(const TractionParams& p, const NotchCommand& command, double speed_mps, double driven_weight_n) {
   if (command.dynamic_brake_notch > 0.0 && p.dynamic_brake) {
     return -DynamicBrakeEffort(*p.dynamic_brake, command.dynamic_brake_notch, speed_mps);
   }

@@ -39,8 +39,7 @@ double EffortTableParams::LargestPower() const {
 double TractiveEffort(const TractiveEffortParams& p, double notch, double speed_mps, double driven_weight_n) {
   const double v = std::abs(speed_mps);
   double effort_n = NotchShare(p.throttle.effort_share, notch) * p.starting_effort_n;
-  effort_n =
-      Min(effort_n, NotchShare(p.throttle.power_share, notch) * p.rim_power_w / Max(v, kLeastPowerSpeed));
+  effort_n = Min(effort_n, NotchShare(p.throttle.power_share, notch) * p.rim_power_w / Max(v, kLeastPowerSpeed));
   effort_n = Min(effort_n, UsableAdhesion(p.usable_adhesion, v) * driven_weight_n);
   if (p.table) effort_n = Min(effort_n, p.table->At(v));
   return effort_n;

@@ -30,8 +30,7 @@ double BuildUpTime(double length_m, BrakingPosition position) {
   if (position == BrakingPosition::kPassenger)
     return length_m <= 900.0 ? 2.3 + 0.17 * l * l : -0.5 + 1.6 * l + 0.03 * l * l;
   const double of_goods = length_m / 100.0;
-  return length_m <= 900.0 ? 12.0 + 0.05 * of_goods * of_goods
-                           : -0.4 + 1.6 * of_goods + 0.03 * of_goods * of_goods;
+  return length_m <= 900.0 ? 12.0 + 0.05 * of_goods * of_goods : -0.4 + 1.6 * of_goods + 0.03 * of_goods * of_goods;
 }
 
 }  // namespace
@@ -39,8 +38,7 @@ double BuildUpTime(double length_m, BrakingPosition position) {
 double BrakedWeightPercentage(double speed_kmh, double stopping_distance_m) {
   if (speed_kmh == 100.0) return 61300.0 / stopping_distance_m - 8.9;
   if (speed_kmh == 120.0) return 83634.0 / stopping_distance_m - 8.8;
-  throw std::invalid_argument("braked weight is told by stops from 100 or 120 km/h, not " +
-                              std::to_string(speed_kmh));
+  throw std::invalid_argument("braked weight is told by stops from 100 or 120 km/h, not " + std::to_string(speed_kmh));
 }
 
 double EtcsStoppingDistance(double lambda, double length_m, double speed_kmh, BrakingPosition position) {
@@ -51,8 +49,7 @@ double EtcsStoppingDistance(double lambda, double length_m, double speed_kmh, Br
     throw std::invalid_argument("the conversion model of ETCS holds for trains up to 1500 m, not " +
                                 std::to_string(length_m));
   if (!(speed_kmh >= 0.0 && speed_kmh <= 200.0))
-    throw std::invalid_argument("the conversion model of ETCS holds up to 200 km/h, not " +
-                                std::to_string(speed_kmh));
+    throw std::invalid_argument("the conversion model of ETCS holds up to 200 km/h, not " + std::to_string(speed_kmh));
   double distance_m = speed_kmh / 3.6 * BuildUpTime(length_m, position);
   constexpr int kSteps = 20000;  // middles of equal steps of the speed: jumps of A cost 1e-4 of a step
   const double dv = speed_kmh / kSteps;

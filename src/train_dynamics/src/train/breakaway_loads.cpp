@@ -18,8 +18,8 @@ BreakawayLoads::BreakawayLoads(const Consist& consist) {
     const VehicleParams& vehicle = consist.vehicle(i);
     const auto& breakaway = vehicle.propulsion_resistance.breakaway;
     any |= breakaway.has_value();
-    resistance_n_.push_back(
-        breakaway ? BreakawayResistance(*breakaway, vehicle.TotalMass(), vehicle.Wheelsets()) : 0.0);
+    resistance_n_.push_back(breakaway ? BreakawayResistance(*breakaway, vehicle.TotalMass(), vehicle.Wheelsets())
+                                      : 0.0);
     distance_m_.push_back(breakaway ? breakaway->distance_m : 0.0);
   }
   if (any) stood_at_m_.assign(resistance_n_.size(), -std::numeric_limits<double>::infinity());

@@ -12,11 +12,10 @@ constexpr double kStandingMps = 0.02;
 constexpr double kSpeedStepMps = 10.0 / 3.6;
 constexpr int kSpeeds = 13;
 constexpr int kShareSeconds = 60;
-constexpr double kReadyShare = 0.7;   // of the way to the next notch at which it is taken
-constexpr double kBrakeShare = 0.25;  // of the first reduction's force that must be lacking, or too much
-constexpr double kStopDeceleration =
-    0.08;                               // [m/s2] that the last application before a stop must give at least
-constexpr double kLargestDemand = 0.5;  // [m/s2]
+constexpr double kReadyShare = 0.7;         // of the way to the next notch at which it is taken
+constexpr double kBrakeShare = 0.25;        // of the first reduction's force that must be lacking, or too much
+constexpr double kStopDeceleration = 0.08;  // [m/s2] that the last application before a stop must give at least
+constexpr double kLargestDemand = 0.5;      // [m/s2]
 
 double Interpolate(const std::vector<double>& values, double at) {
   const double last = static_cast<double>(values.size() - 1);
@@ -25,8 +24,7 @@ double Interpolate(const std::vector<double>& values, double at) {
   return values[i] + (x - static_cast<double>(i)) * (values[i + 1] - values[i]);
 }
 
-double ReductionFor(const BuiltInDriverParams& p, const DriversTrain& train, double force_n,
-                    double speed_mps) {
+double ReductionFor(const BuiltInDriverParams& p, const DriversTrain& train, double force_n, double speed_mps) {
   double reduction_kpa = p.first_reduction_kpa;
   while (reduction_kpa < p.largest_reduction_kpa && train.BrakeForce(p, reduction_kpa, speed_mps) < force_n)
     reduction_kpa += p.reduction_step_kpa;
@@ -46,8 +44,7 @@ struct Hands {
     if (std::abs(to) > std::abs(from)) state.lever_s = time_s;
     state.lever = to;
     DriverCommand command;
-    command.kind =
-        to < 0 || (to == 0 && from < 0) ? DriverCommandKind::kDynamicBrake : DriverCommandKind::kThrottle;
+    command.kind = to < 0 || (to == 0 && from < 0) ? DriverCommandKind::kDynamicBrake : DriverCommandKind::kThrottle;
     command.notch = std::abs(to);
     if (command.kind == DriverCommandKind::kDynamicBrake) command.vehicles = train.dynamic_brakes;
     commands.push_back(command);
@@ -67,8 +64,8 @@ struct Hands {
   }
 };
 
-void MoveLever(const BuiltInDriverParams& p, const DriversTrain& train, double force_n, double speed_mps,
-               bool may_pull, Hands& hands) {
+void MoveLever(const BuiltInDriverParams& p, const DriversTrain& train, double force_n, double speed_mps, bool may_pull,
+               Hands& hands) {
   const int at = static_cast<int>(hands.state.lever);
   const int highest = may_pull ? train.throttle_notches : 0;
   if (at > highest) return hands.Lever(std::max(highest, at - 1));
@@ -105,8 +102,7 @@ void MoveHandle(const BuiltInDriverParams& p, const DriversTrain& train, double 
   }
   const double now_n = train.BrakeForce(p, now_kpa, v);
   const double next_kpa = std::min(p.largest_reduction_kpa, now_kpa + p.reduction_step_kpa);
-  if (next_kpa > now_kpa && since_s > 10.0 &&
-      lacking_n > now_n + 0.5 * (train.BrakeForce(p, next_kpa, v) - now_n))
+  if (next_kpa > now_kpa && since_s > 10.0 && lacking_n > now_n + 0.5 * (train.BrakeForce(p, next_kpa, v) - now_n))
     return hands.Apply(std::max(next_kpa, ReductionFor(p, train, lacking_n, v)));
   if (since_s < 10.0) return;
   if (!train.graduated_release || now_kpa <= p.first_reduction_kpa) {
@@ -149,15 +145,14 @@ double DriversTrain::BrakeForce(const BuiltInDriverParams& p, double reduction_k
   const double first_n = Interpolate(first_brake_n, speed_mps / kSpeedStepMps);
   const double largest_n = Interpolate(largest_brake_n, speed_mps / kSpeedStepMps);
   if (p.largest_reduction_kpa == p.first_reduction_kpa) return first_n;
-  const double share = std::clamp(
-      (reduction_kpa - p.first_reduction_kpa) / (p.largest_reduction_kpa - p.first_reduction_kpa), 0.0, 1.0);
+  const double share =
+      std::clamp((reduction_kpa - p.first_reduction_kpa) / (p.largest_reduction_kpa - p.first_reduction_kpa), 0.0, 1.0);
   return first_n + share * (largest_n - first_n);
 }
 
 double DriversTrain::ApplicationShare(double time_s) const { return Interpolate(application_share, time_s); }
 
-DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake,
-                              const Consist& consist) {
+DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake, const Consist& consist) {
   DriversTrain train;
   std::vector<int> count(consist.vehicle_types.size(), 0);
   std::vector<double> length_m;
@@ -172,9 +167,7 @@ DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemPar
     train.moving_mass_kg += count[type] * (vehicle.TotalMass() + EquivalentRotationalMass(vehicle));
     if (!vehicle.traction) continue;
     const TractionParams& traction = *vehicle.traction;
-    const auto least = [](int& notches, int of_this) {
-      notches = notches == 0 ? of_this : std::min(notches, of_this);
-    };
+    const auto least = [](int& notches, int of_this) { notches = notches == 0 ? of_this : std::min(notches, of_this); };
     least(train.throttle_notches, traction.tractive_effort.throttle.Notches());
     if (traction.dynamic_brake) least(train.dynamic_brake_notches, traction.dynamic_brake->Notches());
     all_brake = all_brake && traction.dynamic_brake;
@@ -307,16 +300,14 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
   const double missing_mps = goal.speed_mps - v;
   // The planned deceleration is of one who is near the goal: a slow train need not slow down yet.
   const double planned_mps2 = goal.acceleration_mps2 * std::clamp(2.0 * v / goal.speed_mps - 1.0, 0.0, 1.0);
-  const double demand =
-      std::clamp(planned_mps2 + missing_mps / p.response_time_s, -kLargestDemand, kLargestDemand);
+  const double demand = std::clamp(planned_mps2 + missing_mps / p.response_time_s, -kLargestDemand, kLargestDemand);
   const double force_n =
       train.moving_mass_kg * demand + train.mass_kg * (kGravity * view.mean_grade + state.resistance_mps2);
   const int lever = static_cast<int>(state.lever);
   const bool is_within = lever < train.throttle_notches && lever > -train.dynamic_brake_notches;
   if (goal.acceleration_mps2 == 0.0 && std::abs(missing_mps) < 1.0 && is_within) {
     state.resistance_mps2 = std::clamp(
-        state.resistance_mps2 + p.period_s * missing_mps / (4.0 * p.response_time_s * p.response_time_s),
-        -0.03, 0.05);
+        state.resistance_mps2 + p.period_s * missing_mps / (4.0 * p.response_time_s * p.response_time_s), -0.03, 0.05);
   }
   const double first_n = train.BrakeForce(p, p.first_reduction_kpa, std::abs(v));
   const bool is_released = view.reduction_kpa == 0.0 && state.air_n < 0.2 * first_n;

@@ -25,8 +25,7 @@ bool ConditionWatch::Holds(const Situation& now) {
   if (c.position_m) holds = holds && (from_m_ - *c.position_m) * (now.position_m - *c.position_m) <= 0.0;
   if (c.speed_above_kmh) holds = holds && speed_kmh > *c.speed_above_kmh;
   if (c.speed_below_kmh) holds = holds && speed_kmh < *c.speed_below_kmh;
-  if (c.standing)
-    holds = holds && (std::abs(now.speed_mps) <= kStandingMps || last_mps_ * now.speed_mps < 0.0);
+  if (c.standing) holds = holds && (std::abs(now.speed_mps) <= kStandingMps || last_mps_ * now.speed_mps < 0.0);
   last_mps_ = now.speed_mps;
   if (holds && true_since_s_ < 0.0) true_since_s_ = now.time_s;
   return true_since_s_ >= 0.0 && now.time_s >= true_since_s_ + c.delay_s;
@@ -54,23 +53,20 @@ CommandSchedule::CommandSchedule(const std::vector<DriverCommand>& commands,
 }
 
 bool CommandSchedule::IsDone() const {
-  return !until_ && live_.empty() &&
-         std::all_of(commands_.begin(), commands_.end(),
-                     [](const Awaited& awaited) { return awaited.is_given != 0.0; });
+  return !until_ && live_.empty() && std::all_of(commands_.begin(), commands_.end(), [](const Awaited& awaited) {
+    return awaited.is_given != 0.0;
+  });
 }
 
 void CommandSchedule::Judge(const Situation& now, std::vector<GivenCommand>& given) {
-  const auto give = [&](const DriverCommand& command, bool is_live) {
-    Give({now.exchange, command, is_live}, given);
-  };
+  const auto give = [&](const DriverCommand& command, bool is_live) { Give({now.exchange, command, is_live}, given); };
   bool all_before_are_given = true;
   for (Awaited& awaited : commands_) {
     if (awaited.is_given == 0.0) {
-      const bool is_due =
-          awaited.watch ? all_before_are_given && now.time_s >= awaited.not_before_s.value_or(0.0) &&
-                              awaited.watch->Holds(now)
-          : awaited.command.time_s ? now.time_s >= *awaited.command.time_s
-                                   : static_cast<double>(now.exchange) >= *awaited.command.exchange;
+      const bool is_due = awaited.watch ? all_before_are_given && now.time_s >= awaited.not_before_s.value_or(0.0) &&
+                                              awaited.watch->Holds(now)
+                          : awaited.command.time_s ? now.time_s >= *awaited.command.time_s
+                                                   : static_cast<double>(now.exchange) >= *awaited.command.exchange;
       if (is_due) {
         awaited.is_given = 1.0;
         give(awaited.command, false);

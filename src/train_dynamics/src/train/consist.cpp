@@ -32,8 +32,7 @@ Consist::Consist(const TrainParams& train) {
         centre_m.push_back(0.0);
       } else {
         connection_type.push_back(i % group.vehicles_per_unit == 0 ? 0 : within_unit);
-        centre_m.push_back(centre_m.back() -
-                           0.5 * (vehicle(vehicles() - 1).length_m + group.vehicle.length_m));
+        centre_m.push_back(centre_m.back() - 0.5 * (vehicle(vehicles() - 1).length_m + group.vehicle.length_m));
       }
       if (group.locomotive || group.vehicle.traction) locomotives.push_back(vehicles());
       vehicle_type.push_back(type);

@@ -31,8 +31,7 @@ void CurvingLoads::Evaluate(double interval_s, const std::vector<double>& head_d
   loads.curving_resistance_n.resize(type_.size());
   for (std::size_t i = 0; i < type_.size(); ++i) {
     const double from_m = start_m_[i] + head_displacement_m[i];
-    loads.curving_resistance_n[i] =
-        Mean(types_[type_[i]], from_m, from_m + interval_s * head_velocity_mps[i]);
+    loads.curving_resistance_n[i] = Mean(types_[type_[i]], from_m, from_m + interval_s * head_velocity_mps[i]);
   }
 }
 

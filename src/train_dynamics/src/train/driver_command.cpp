@@ -19,9 +19,8 @@ BrakeCommand DriverCommand::OfBrake(double at_s) const {
 }
 
 LocomotiveCommand DriverCommand::OfLocomotives(double at_s) const {
-  const LocomotiveCommandKind of_locomotives = kind == DriverCommandKind::kThrottle
-                                                   ? LocomotiveCommandKind::kThrottle
-                                                   : LocomotiveCommandKind::kDynamicBrake;
+  const LocomotiveCommandKind of_locomotives =
+      kind == DriverCommandKind::kThrottle ? LocomotiveCommandKind::kThrottle : LocomotiveCommandKind::kDynamicBrake;
   return {at_s, of_locomotives, notch, vehicles};
 }
 
@@ -34,8 +33,7 @@ LocomotiveBrakeCommand DriverCommand::OfLocomotiveBrakes(double at_s) const {
 std::string DriverCommand::Text() const {
   const std::string name = NameOf(kind);
   if (kind == DriverCommandKind::kApply) return name + " " + ShortestDecimal(reduction_kpa) + " kPa";
-  if (kind == DriverCommandKind::kIndependentBrake)
-    return name + " " + ShortestDecimal(pressure_kpa) + " kPa";
+  if (kind == DriverCommandKind::kIndependentBrake) return name + " " + ShortestDecimal(pressure_kpa) + " kPa";
   if (IsOfRail())
     return name + " " + ShortestDecimal(friction_coefficient) + " from " + ShortestDecimal(from_m) + " to " +
            ShortestDecimal(to_m) + " m";
@@ -47,13 +45,11 @@ bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group) {
   return group.vehicle.traction || (group.locomotive && command.IsOfLocomotiveBrakes());
 }
 
-std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key,
-                                   const TrackParams& track) {
+std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key, const TrackParams& track) {
   std::vector<BrokenRule> broken;
   const auto judge = [&](const char* name, double at_m) {
     if (IsWithinRamp(track, at_m))
-      broken.push_back(
-          {key + "." + name, "must not lie within a ramp between surfaces of the track", {"track"}});
+      broken.push_back({key + "." + name, "must not lie within a ramp between surfaces of the track", {"track"}});
   };
   judge("from_m", patch.from_m);
   judge("to_m", patch.to_m);
@@ -113,8 +109,7 @@ std::string RenumberedCommands(const std::string& text, const std::vector<std::s
 std::vector<LocomotiveBrakeCommand> TimedLocomotiveBrakeCommands(const std::vector<DriverCommand>& commands) {
   std::vector<LocomotiveBrakeCommand> timed;
   for (const DriverCommand& command : commands) {
-    if (command.IsOfLocomotiveBrakes() && command.time_s)
-      timed.push_back(command.OfLocomotiveBrakes(*command.time_s));
+    if (command.IsOfLocomotiveBrakes() && command.time_s) timed.push_back(command.OfLocomotiveBrakes(*command.time_s));
   }
   return timed;
 }

@@ -5,7 +5,8 @@
 namespace train_dynamics {
 namespace {
 
-/// The steps of a quantity on (from_m, to_m], by rising position; a piece with the same value as that before it is none.
+/// The steps of a quantity on (from_m, to_m], by rising position; a piece with the same value as that before it is
+/// none.
 std::vector<PlaceAhead> StepsOn(const StepFunction& steps, double from_m, double to_m) {
   std::vector<PlaceAhead> ahead;
   for (StepFunction::Held held = steps.From(from_m); held.on.to_m <= to_m;) {
@@ -63,11 +64,10 @@ void RouteSight::Look(const std::vector<double>& displacement_m, double ahead_m,
   const double to_m = view.front_m + ahead_m;
   view.limits_ahead = StepsOn(track_.speed_limits(), view.front_m, to_m);
   view.grades_ahead = StepsOn(track_.grades(), view.front_m, to_m);
-  const auto first = std::find_if(stations_.begin(), stations_.end(), [&](const StationParams& station) {
-    return station.position_m >= view.position_m;
-  });
-  const auto end = std::find_if(first, stations_.end(),
-                                [&](const StationParams& station) { return station.position_m > to_m; });
+  const auto first = std::find_if(stations_.begin(), stations_.end(),
+                                  [&](const StationParams& station) { return station.position_m >= view.position_m; });
+  const auto end =
+      std::find_if(first, stations_.end(), [&](const StationParams& station) { return station.position_m > to_m; });
   view.stations_ahead.assign(first, end);
 }
 

@@ -26,8 +26,7 @@ double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model) {
 double LightestCouplerHead(const ScenarioParams& scenario) {
   double lightest_kg = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
-    lightest_kg =
-        std::min(lightest_kg, CouplerHeadMass(scenario.train.consist[i].vehicle, scenario.ModelOfGroup(i)));
+    lightest_kg = std::min(lightest_kg, CouplerHeadMass(scenario.train.consist[i].vehicle, scenario.ModelOfGroup(i)));
   }
   return lightest_kg;
 }

@@ -11,8 +11,7 @@ void InProcessTransport::RefuseExternal(const ScenarioParams& scenario) {
   if (external.empty()) return;
   const bool is_one = external.size() == 1 && external.front().count == 1;
   throw std::invalid_argument(VehiclesText(external.front()) + (external.size() > 1 ? " and others" : "") +
-                              (is_one ? " is" : " are") + " external, moved by the node " +
-                              external.front().name +
+                              (is_one ? " is" : " are") + " external, moved by the node " + external.front().name +
                               ": run such a train as a ROS graph (rosrun train_brake run), with its node");
 }
 
@@ -29,8 +28,7 @@ void InProcessTransport::Exchange(const ExchangeRequest& request, ExchangeReply&
   if (!vehicles_.Advance(request, 0, reply)) reply.fault = vehicles_.FindFault();
   if (request.record) {
     reply.slides.clear();
-    vehicles_.TellSlides(request.ledger, interval_s_ * static_cast<double>(request.exchange + 1),
-                         reply.slides);
+    vehicles_.TellSlides(request.ledger, interval_s_ * static_cast<double>(request.exchange + 1), reply.slides);
   }
   if (!request.snapshot) return;
   reply.snapshot.resize(count_);

@@ -45,9 +45,8 @@ void InTrainForces::Set::Add(int at) {
 
 void InTrainForces::Set::Begin(double at_m) {
   const int padded = PaddedToLanes(static_cast<int>(place.size()));
-  for (std::vector<double>* array :
-       {&start_extension_m, &next_extension_m, &rate_mps, &force_n, &elastic_n, &tension_n, &tension_time_s,
-        &compression_n, &compression_time_s, &dissipated_j}) {
+  for (std::vector<double>* array : {&start_extension_m, &next_extension_m, &rate_mps, &force_n, &elastic_n, &tension_n,
+                                     &tension_time_s, &compression_n, &compression_time_s, &dissipated_j}) {
     array->assign(padded, 0.0);
   }
   extension_m.assign(padded, at_m);
@@ -142,8 +141,8 @@ void InTrainForces::CloseInterval(const std::vector<double>& head_displacement_m
   }
   for (Set& set : sets_) {
     for (const Row& row : set.rows) {
-      rows.offset_differences(row.count, row.stride, &head_displacement_m[row.place],
-                              &set.start_extension_m[row.at], &set.next_extension_m[row.at]);
+      rows.offset_differences(row.count, row.stride, &head_displacement_m[row.place], &set.start_extension_m[row.at],
+                              &set.next_extension_m[row.at]);
     }
     const auto book = [&](const auto& law) {
       BestConnectionKernels().Of(law).work(law, set.next_extension_m.data(), set.Arrays());
@@ -202,9 +201,8 @@ template <class Self, class Function>
 void InTrainForces::ForEachMemory(Self& self, Function& function) {
   for (const Place& place : self.places_) {
     auto& set = self.sets_[place.set];
-    for (auto* array :
-         {&set.start_extension_m, &set.extension_m, &set.stored_j, &set.dissipated_j, &set.parted_s,
-          &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
+    for (auto* array : {&set.start_extension_m, &set.extension_m, &set.stored_j, &set.dissipated_j, &set.parted_s,
+                        &set.tension_n, &set.tension_time_s, &set.compression_n, &set.compression_time_s}) {
       function((*array)[place.at]);
     }
     ForEachField(set, place.at, function);
@@ -229,8 +227,7 @@ void InTrainForces::SetMemory(const std::vector<double>& memory) {
 
 ConnectionEnergy InTrainForces::Energy() const {
   ConnectionEnergy energy;
-  for (const External& external : external_)
-    energy.external = energy.external.value_or(0.0) + external.work_j;
+  for (const External& external : external_) energy.external = energy.external.value_or(0.0) + external.work_j;
   for (const Place& place : places_) {
     const Set& set = sets_[place.set];
     const bool loose = set.parted_s[place.at] >= 0.0 && set.extension_m[place.at] > 0.0;

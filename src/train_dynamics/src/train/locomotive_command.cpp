@@ -63,15 +63,13 @@ std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command,
   return broken;
 }
 
-std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand& command,
-                                                    const std::string& key, const TrainParams& train,
-                                                    const BrakeSystemParams& brake) {
+std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand& command, const std::string& key,
+                                                    const TrainParams& train, const BrakeSystemParams& brake) {
   std::vector<BrokenRule> broken;
   const int count = train.VehicleCount();
   std::vector<char> is_locomotive;
   for (const ConsistGroupParams& group : train.consist)
-    is_locomotive.insert(is_locomotive.end(), group.count,
-                         group.locomotive || group.vehicle.traction ? 1 : 0);
+    is_locomotive.insert(is_locomotive.end(), group.count, group.locomotive || group.vehicle.traction ? 1 : 0);
   for (std::size_t j = 0; j < command.vehicles.size(); ++j) {
     const std::string entry = key + ".vehicles[" + std::to_string(j) + "]";
     const int vehicle = VehicleIndex(command.vehicles[j], count);
@@ -83,18 +81,15 @@ std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand
                         {kVehicleCounts, kTraction, kLocomotive}});
     }
   }
-  const std::string what =
-      command.kind == LocomotiveBrakeCommandKind::kBailOff ? "bail_off" : "independent_brake";
+  const std::string what = command.kind == LocomotiveBrakeCommandKind::kBailOff ? "bail_off" : "independent_brake";
   if (command.vehicles.empty() && std::count(is_locomotive.begin(), is_locomotive.end(), 1) == 0)
-    broken.push_back({key + ".kind",
-                      "must not be " + what + " for a train without a locomotive",
-                      {kTraction, kLocomotive}});
-  if (command.kind == LocomotiveBrakeCommandKind::kBailOff && brake.kind != BrakeSystemKind::kPneumatic)
     broken.push_back(
-        {key + ".kind",
-         "must not be bail_off with a brake of kind empirical, which has no cylinders that could be "
-         "emptied: take a brake of kind pneumatic",
-         {"brake.kind"}});
+        {key + ".kind", "must not be " + what + " for a train without a locomotive", {kTraction, kLocomotive}});
+  if (command.kind == LocomotiveBrakeCommandKind::kBailOff && brake.kind != BrakeSystemKind::kPneumatic)
+    broken.push_back({key + ".kind",
+                      "must not be bail_off with a brake of kind empirical, which has no cylinders that could be "
+                      "emptied: take a brake of kind pneumatic",
+                      {"brake.kind"}});
   if (command.pressure_kpa > brake.locomotive_brake.maximum_independent_kpa)
     broken.push_back({key + ".pressure_kpa",
                       "must be at most brake.locomotive_brake.maximum_independent_kpa, " +

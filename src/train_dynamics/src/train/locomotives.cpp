@@ -24,9 +24,8 @@ Locomotives::Locomotives(const Consist& consist, const std::vector<LocomotiveCom
 
 void Locomotives::Command(const LocomotiveCommand& command) {
   for (Drive& drive : drives_) {
-    const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(), [&](int number) {
-      return VehicleIndex(number, vehicles_) == drive.vehicle;
-    });
+    const bool is_named = std::any_of(command.vehicles.begin(), command.vehicles.end(),
+                                      [&](int number) { return VehicleIndex(number, vehicles_) == drive.vehicle; });
     if (!command.vehicles.empty() && !is_named) continue;
     const Order order{command.time_s + drive.command_delay_s, command.Notches()};
     const auto at = std::upper_bound(drive.orders.begin(), drive.orders.end(), order,
@@ -51,27 +50,24 @@ void Locomotives::Advance(double middle_s, double interval_s, const std::vector<
   loads.traction_n.resize(head_velocity_mps.size());
   loads.dynamic_brake_n.resize(head_velocity_mps.size());
   for (Drive& drive : drives_) {
-    for (; drive.obeyed < drive.orders.size() && drive.orders[drive.obeyed].time_s <= middle_s;
-         ++drive.obeyed)
+    for (; drive.obeyed < drive.orders.size() && drive.orders[drive.obeyed].time_s <= middle_s; ++drive.obeyed)
       drive.command = drive.orders[drive.obeyed].command;
     const double speed_mps = head_velocity_mps[drive.vehicle];
-    StepDrive(drive.traction.drive,
-              WantedEffort(drive.traction, drive.command, speed_mps, drive.driven_weight_n), interval_s,
-              drive.state);
+    StepDrive(drive.traction.drive, WantedEffort(drive.traction, drive.command, speed_mps, drive.driven_weight_n),
+              interval_s, drive.state);
     const double effort_n = drive.state.effort_n;
     loads.traction_n[drive.vehicle] = Max(0.0, effort_n);
     loads.dynamic_brake_n[drive.vehicle] = Max(0.0, -effort_n);
     if (!drive.traction.energy_supply) continue;
     const double rim_power_w = effort_n > 0.0 ? effort_n * speed_mps : effort_n * Abs(speed_mps);
-    drive.energy_taken_j += interval_s * PowerTaken(*drive.traction.energy_supply, rim_power_w,
-                                                    drive.traction.tractive_effort.rim_power_w);
+    drive.energy_taken_j +=
+        interval_s * PowerTaken(*drive.traction.energy_supply, rim_power_w, drive.traction.tractive_effort.rim_power_w);
   }
 }
 
 void Locomotives::PassBy(double middle_s) {
   for (Drive& drive : drives_) {
-    while (drive.obeyed < drive.orders.size() && drive.orders[drive.obeyed].time_s <= middle_s)
-      ++drive.obeyed;
+    while (drive.obeyed < drive.orders.size() && drive.orders[drive.obeyed].time_s <= middle_s) ++drive.obeyed;
   }
 }
 

@@ -32,8 +32,7 @@ std::string VehicleName(int vehicle, int vehicles) {
 
 std::string VehiclesText(const Rank& rank) {
   const std::string first = std::to_string(rank.first + 1);
-  return rank.count == 1 ? "vehicle " + first
-                         : "vehicles " + first + "-" + std::to_string(rank.first + rank.count);
+  return rank.count == 1 ? "vehicle " + first : "vehicles " + first + "-" + std::to_string(rank.first + rank.count);
 }
 
 }  // namespace train_dynamics

@@ -47,8 +47,7 @@ void RunSummary::JudgeMotion(const TrainRecord& record) {
 
 std::string RunSummary::RouteWarning() const {
   if (std::isnan(left_route_s_)) return "";
-  return "at " + ShortestDecimal(left_route_s_) +
-         " s the train lies beyond an end of its route, which is known from " +
+  return "at " + ShortestDecimal(left_route_s_) + " s the train lies beyond an end of its route, which is known from " +
          ShortestDecimal(route_.from_m) + " m to " + ShortestDecimal(route_.to_m) +
          " m; there, the first and the last of its values hold on";
 }
@@ -73,9 +72,8 @@ bool RunSummary::RolledBack() const { return BehindFurthest() > kRolledBack; }
 
 double RunSummary::ResidualShare(const TrainMaster& master) const {
   const double initial_j = master.at_time_zero().stored_energy_j;
-  const double turned_over_j =
-      std::max({std::abs(ledger_.Dissipated()), std::abs(ledger_.Stored() - initial_j),
-                std::abs(ledger_.gravity_work_j) + std::abs(ledger_.traction_work_j)});
+  const double turned_over_j = std::max({std::abs(ledger_.Dissipated()), std::abs(ledger_.Stored() - initial_j),
+                                         std::abs(ledger_.gravity_work_j) + std::abs(ledger_.traction_work_j)});
   return turned_over_j > 0.0 ? ledger_.Residual(initial_j) / turned_over_j : 0.0;
 }
 

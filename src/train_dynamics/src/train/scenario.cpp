@@ -26,8 +26,8 @@ const char kModels[] = "train.consist[].model";
 const char kNames[] = "train.consist[].name";
 const char kTraction[] = "train.consist[].vehicle.traction";
 const std::vector<std::string> kWhichBrake = {"pressure_table", "brake.kind"};
-const std::vector<std::string> kStations = {"track.stations", "track.points[].station",
-                                            "track.points[].position_m", "track.points[].position_km"};
+const std::vector<std::string> kStations = {"track.stations", "track.points[].station", "track.points[].position_m",
+                                            "track.points[].position_km"};
 
 }  // namespace
 
@@ -46,9 +46,7 @@ long ScenarioParams::Exchanges() const { return Parts(duration_s, exchange_inter
 int ScenarioParams::ExchangesPerRecord() const {
   return static_cast<int>(Parts(record_interval_s, exchange_interval_s));
 }
-int ScenarioParams::RecordsPerLedger() const {
-  return static_cast<int>(Parts(ledger_interval_s, record_interval_s));
-}
+int ScenarioParams::RecordsPerLedger() const { return static_cast<int>(Parts(ledger_interval_s, record_interval_s)); }
 
 double ScenarioParams::MeanInitialSpeed() const {
   double mass = 0.0, momentum = 0.0;
@@ -108,8 +106,7 @@ std::vector<int> ScenarioParams::DetailedVehicles() const {
 
 bool ScenarioParams::Multiple(double whole, double part) {
   const double ratio = whole / part;
-  return ratio > 0.5 && ratio < 1e9 &&
-         std::abs(ratio - std::round(ratio)) < 1e-6 * std::max(1.0, 1e-3 * ratio);
+  return ratio > 0.5 && ratio < 1e9 && std::abs(ratio - std::round(ratio)) < 1e-6 * std::max(1.0, 1e-3 * ratio);
 }
 
 std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
@@ -119,19 +116,17 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
   JudgeBrake(broken);
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     if (ModelOfGroup(i) != VehicleModel::kTwoD || !train.consist[i].vehicle.IsOneMass()) continue;
-    broken.push_back(
-        {OfGroup(i) + ".vehicle.mass_kg",
-         "is all that the vehicle has, but the 2d model needs its bodies (carbody, bolster, bogie_frame, "
-         "wheelset ...); run it with the ltd model, or say model: ltd for the group",
-         {"model", OfGroup(i) + ".model"}});
+    broken.push_back({OfGroup(i) + ".vehicle.mass_kg",
+                      "is all that the vehicle has, but the 2d model needs its bodies (carbody, bolster, bogie_frame, "
+                      "wheelset ...); run it with the ltd model, or say model: ltd for the group",
+                      {"model", OfGroup(i) + ".model"}});
   }
   const int vehicles = train.VehicleCount();
   for (std::size_t i = 0; i < detail_vehicles.size(); ++i) {
     const int vehicle = VehicleIndex(detail_vehicles[i], vehicles);
     if (vehicle < 0) {
       broken.push_back({"detail_vehicles" + ListIndex(i), VehicleRule(vehicles), {kVehicleCounts}});
-    } else if (VehicleModels()[vehicle] == VehicleModel::kTwoD &&
-               train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
+    } else if (VehicleModels()[vehicle] == VehicleModel::kTwoD && train.VehicleAt(vehicle).wheelsets_per_bogie != 2) {
       broken.push_back({"detail_vehicles" + ListIndex(i),
                         "must be a vehicle with wheelsets_per_bogie 2: full detail is not recorded of others",
                         {kVehicleCounts, "model", kModels, "train.consist[].vehicle.wheelsets_per_bogie"}});
@@ -152,18 +147,16 @@ std::vector<BrokenRule> ScenarioParams::BrokenRules() const {
       continue;
     }
     if (!named[i].group.empty()) {
-      broken.push_back(
-          {"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {kNames, kTraction}});
+      broken.push_back({"commands" + ListIndex(i) + ".group", RuleOfGroup(named[i], train), {kNames, kTraction}});
       continue;
     }
     if (commands[i].IsOfLocomotiveBrakes() && brake) {
-      for (const BrokenRule& rule : JudgeLocomotiveBrakeCommand(named[i].OfLocomotiveBrakes(0.0),
-                                                                "commands" + ListIndex(i), train, *brake))
+      for (const BrokenRule& rule :
+           JudgeLocomotiveBrakeCommand(named[i].OfLocomotiveBrakes(0.0), "commands" + ListIndex(i), train, *brake))
         broken.push_back(rule);
     }
     if (!commands[i].IsOfLocomotives()) continue;
-    for (const BrokenRule& rule :
-         JudgeLocomotiveCommand(named[i].OfLocomotives(0.0), "commands" + ListIndex(i), train))
+    for (const BrokenRule& rule : JudgeLocomotiveCommand(named[i].OfLocomotives(0.0), "commands" + ListIndex(i), train))
       broken.push_back(rule);
   }
   return broken;
@@ -205,8 +198,7 @@ void ScenarioParams::JudgeBrake(std::vector<BrokenRule>& broken) const {
         return other.key == RenumberedCommands(rule.key, index);
       });
       if (!is_known)
-        broken.push_back(
-            {RenumberedCommands(rule.key, index), RenumberedCommands(rule.text, index), rule.reads});
+        broken.push_back({RenumberedCommands(rule.key, index), RenumberedCommands(rule.text, index), rule.reads});
     }
   };
   std::vector<std::size_t> index;
@@ -242,20 +234,17 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
   }
   if (initial_reduction_kpa > 0.0) {
     if (!brake || !pressure_table.empty()) {
-      broken.push_back(
-          {"initial_reduction_kpa", "needs brake: a pressure_table has its own start", kWhichBrake});
+      broken.push_back({"initial_reduction_kpa", "needs brake: a pressure_table has its own start", kWhichBrake});
     } else {
-      for (const BrokenRule& rule : brake->BrokenRules(
-               {{0.0, BrakeCommandKind::kApply, initial_reduction_kpa}}, train.VehicleCount())) {
-        if (rule.key.rfind("commands", 0) == 0)
-          broken.push_back({"initial_reduction_kpa", rule.text, rule.reads});
+      for (const BrokenRule& rule :
+           brake->BrokenRules({{0.0, BrakeCommandKind::kApply, initial_reduction_kpa}}, train.VehicleCount())) {
+        if (rule.key.rfind("commands", 0) == 0) broken.push_back({"initial_reduction_kpa", rule.text, rule.reads});
       }
     }
   }
   if (!driver) return;
   if (!Multiple(driver->period_s, exchange_interval_s)) {
-    broken.push_back(
-        {"driver.period_s", "must be a multiple of exchange_interval_s", {"exchange_interval_s"}});
+    broken.push_back({"driver.period_s", "must be a multiple of exchange_interval_s", {"exchange_interval_s"}});
   }
   if (!brake || !pressure_table.empty()) {
     broken.push_back({"driver", "needs brake: a driver cannot drive with a pressure_table", kWhichBrake});
@@ -265,8 +254,8 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
       for (const BrokenRule& rule :
            brake->BrokenRules({{0.0, BrakeCommandKind::kApply, reduction_kpa}}, train.VehicleCount())) {
         if (rule.key.rfind("commands", 0) != 0) continue;
-        broken.push_back({std::string("driver.") + (is_first ? "first" : "largest") + "_reduction_kpa",
-                          rule.text, rule.reads});
+        broken.push_back(
+            {std::string("driver.") + (is_first ? "first" : "largest") + "_reduction_kpa", rule.text, rule.reads});
       }
     }
   }
@@ -278,16 +267,14 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
     const StopParams& stop = driver->stops[i];
     const std::string key = "driver.stops" + ListIndex(i);
     if (!stop.position_m && std::find(stations.begin(), stations.end(), stop.station) == stations.end()) {
-      broken.push_back(
-          {key + ".station", "must be a station of the track" + KnownNames(stations), kStations});
+      broken.push_back({key + ".station", "must be a station of the track" + KnownNames(stations), kStations});
       continue;
     }
     if (stops_m[i] <= last_m) {
       std::vector<std::string> reads = kStations;
       reads.insert(reads.end(), {"start_position_m", key, "driver.stops" + ListIndex(i == 0 ? i : i - 1)});
       broken.push_back(
-          {key, "must lie ahead of the start and of the stop before, beyond " + ShortNumber(last_m) + " m",
-           reads});
+          {key, "must lie ahead of the start and of the stop before, beyond " + ShortNumber(last_m) + " m", reads});
     }
     last_m = stops_m[i];
   }
@@ -310,8 +297,8 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
     goes_on = is_two_d;
   }
   const bool is_mixed = Uses(VehicleModel::kLtd) || Uses(VehicleModel::kLtdNoInertia);
-  const std::string who = is_mixed ? "vehicles of the 2d model at their start, which stand"
-                                   : "the train at its start, which stands";
+  const std::string who =
+      is_mixed ? "vehicles of the 2d model at their start, which stand" : "the train at its start, which stands";
   for (std::size_t i = 0; i < track.dips.size(); ++i) {
     const DipParams& dip = track.dips[i];
     if (dip.depth_m == 0.0) continue;
@@ -319,8 +306,8 @@ void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
       if (!(dip.from_m < stretch.front_m && dip.from_m + dip.length_m > stretch.rear_m)) continue;
       broken.push_back({"track.dips" + ListIndex(i),
                         "must not lie under " + who + " on [" + ShortNumber(stretch.rear_m) + ", " +
-                            ShortNumber(stretch.front_m) + "] m; the dip is on [" + ShortNumber(dip.from_m) +
-                            ", " + ShortNumber(dip.from_m + dip.length_m) + "] m",
+                            ShortNumber(stretch.front_m) + "] m; the dip is on [" + ShortNumber(dip.from_m) + ", " +
+                            ShortNumber(dip.from_m + dip.length_m) + "] m",
                         {"track.dips" + ListIndex(i), "start_position_m", "model", kModels, kVehicleCounts,
                          "train.consist[].vehicle.length_m"}});
       break;
@@ -334,13 +321,11 @@ void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const
     const VehicleParams& vehicle = train.consist[i].vehicle;
     const auto must_be_multiple = [&](const std::string& key, double value) {
       if (value == 0.0 || Multiple(value, dt_s)) return;
-      broken.push_back({OfGroup(i) + ".vehicle." + key,
-                        "must be a multiple of dt_s",
-                        {"dt_s", "model", OfGroup(i) + ".model"}});
+      broken.push_back(
+          {OfGroup(i) + ".vehicle." + key, "must be a multiple of dt_s", {"dt_s", "model", OfGroup(i) + ".model"}});
     };
     if (vehicle.traction && vehicle.traction->slip_control)
-      must_be_multiple("traction.slip_control.sampling_period_s",
-                       vehicle.traction->slip_control->sampling_period_s);
+      must_be_multiple("traction.slip_control.sampling_period_s", vehicle.traction->slip_control->sampling_period_s);
     if (!vehicle.wheel_slide_protection) continue;
     const SlideProtectionParams& protection = *vehicle.wheel_slide_protection;
     must_be_multiple("wheel_slide_protection.sampling_period_s", protection.sampling_period_s);
@@ -362,9 +347,8 @@ BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consi
   };
   const std::vector<BrakeCommand> timed = TimedBrakeCommands(scenario.commands);
   const bool is_applied = scenario.initial_reduction_kpa > 0.0;
-  BrakeSystem brake = is_applied
-                          ? brake_with({{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}})
-                          : brake_with(timed);
+  BrakeSystem brake =
+      is_applied ? brake_with({{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}}) : brake_with(timed);
   if (is_applied) {
     constexpr double kSettle_s = 120.0;
     std::vector<double> pressure_pa;
@@ -373,10 +357,8 @@ BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consi
     for (const BrakeCommand& command : timed) brake.Command(command);
   }
   std::vector<LocomotiveBrakes::Locomotive> locomotives;
-  for (int i : consist.locomotives)
-    locomotives.push_back({i, consist.command_delay_s[consist.vehicle_type[i]]});
-  brake.SetLocomotiveBrakes(
-      LocomotiveBrakes(scenario.brake->locomotive_brake, locomotives, consist.vehicles()));
+  for (int i : consist.locomotives) locomotives.push_back({i, consist.command_delay_s[consist.vehicle_type[i]]});
+  brake.SetLocomotiveBrakes(LocomotiveBrakes(scenario.brake->locomotive_brake, locomotives, consist.vehicles()));
   for (const LocomotiveBrakeCommand& command :
        TimedLocomotiveBrakeCommands(WithVehicles(scenario.commands, scenario.train)))
     brake.Command(command);

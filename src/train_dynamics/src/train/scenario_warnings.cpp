@@ -8,23 +8,19 @@
 namespace train_dynamics {
 namespace {
 
-std::string Counted(std::size_t entries) {
-  return std::to_string(entries) + (entries == 1 ? " entry" : " entries");
-}
+std::string Counted(std::size_t entries) { return std::to_string(entries) + (entries == 1 ? " entry" : " entries"); }
 
 /// Warns of a connection that the exchange interval or the step is too long for.
-void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
-                      const ConnectionParams& connection, double lightest_kg,
-                      std::vector<Warning>& warnings) {
+void WarnOfConnection(const ScenarioParams& scenario, const std::string& key, const ConnectionParams& connection,
+                      double lightest_kg, std::vector<Warning>& warnings) {
   const ConnectionLaw law = connection.Law();
   const bool depends_on_force =
       std::visit([](const auto& of) { return of.TangentAt(kLargeCouplerForce).depends_on_force; }, law);
   const double longest_s = LongestStableExchange(connection, LightestCouplerHead(scenario));
   // A multiple of dt_s may exceed the limit by no more than a rounding error.
   if (scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
-    warnings.push_back({"exchange_interval_s", "exchange_interval_s " +
-                                                   ShortNumber(scenario.exchange_interval_s) + " is above " +
-                                                   ShortNumber(longest_s) + ", the longest that " + key +
+    warnings.push_back({"exchange_interval_s", "exchange_interval_s " + ShortNumber(scenario.exchange_interval_s) +
+                                                   " is above " + ShortNumber(longest_s) + ", the longest that " + key +
                                                    " stands" + (depends_on_force ? " at 900 kN" : "") +
                                                    ": coupler forces may break down; take a shorter one"});
   }
@@ -34,11 +30,10 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key,
   const double speed_mps = smooth->params.smoothing_speed_mps;
   const double lowest_mps = smooth->LeastSmoothingSpeed(kLargeCouplerForce, scenario.dt_s, lightest_kg);
   if (speed_mps >= lowest_mps) return;
-  warnings.push_back(
-      {speed_key, speed_key + " " + ShortNumber(speed_mps) + " is below " + ShortNumber(lowest_mps) +
-                      ", the least for dt_s " + ShortNumber(scenario.dt_s) + " at 900 kN and " +
-                      ShortNumber(lightest_kg) +
-                      " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
+  warnings.push_back({speed_key, speed_key + " " + ShortNumber(speed_mps) + " is below " + ShortNumber(lowest_mps) +
+                                     ", the least for dt_s " + ShortNumber(scenario.dt_s) + " at 900 kN and " +
+                                     ShortNumber(lightest_kg) +
+                                     " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
 /// The positions that wheels can have in a run at most.
@@ -53,8 +48,7 @@ Stretch ReachOf(const ScenarioParams& scenario) {
   }
   double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
   double rear_m = front_m;
-  for (const ConsistGroupParams& group : scenario.train.consist)
-    rear_m -= group.count * group.vehicle.length_m;
+  for (const ConsistGroupParams& group : scenario.train.consist) rear_m -= group.count * group.vehicle.length_m;
   const double time_s = scenario.duration_s;
   double fastest_mps = 0.0, slowest_mps = 0.0, traction_n = 0.0, weight_n = 0.0;
   for (std::size_t i = 0; i < scenario.train.consist.size(); ++i) {
@@ -68,14 +62,13 @@ Stretch ReachOf(const ScenarioParams& scenario) {
   const auto way = [&](double start_mps, double slope) {
     return time_s * (std::max(0.0, start_mps) + 0.5 * kGravity * slope * time_s);
   };
-  return {rear_m - way(-slowest_mps, steepest_rise),
-          front_m + way(fastest_mps, steepest_fall + traction_n / weight_n)};
+  return {rear_m - way(-slowest_mps, steepest_rise), front_m + way(fastest_mps, steepest_fall + traction_n / weight_n)};
 }
 
 /// Warns once of the entries of a list of the track that no wheel reaches.
 template <class Entry, class EndOf>
-void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of,
-                 const Stretch& reach, std::vector<Warning>& warnings) {
+void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of, const Stretch& reach,
+                 std::vector<Warning>& warnings) {
   std::size_t beyond = 0, first = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].from_m < reach.to_m && end_of(entries[i]) > reach.from_m) continue;
@@ -84,9 +77,8 @@ void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, con
   if (beyond == 0) return;
   const std::string key = list + ListIndex(first);
   warnings.push_back({key, key + " on [" + ShortNumber(entries[first].from_m) + ", " +
-                               ShortNumber(end_of(entries[first])) +
-                               "] m is reached by no wheel: they are on [" + ShortNumber(reach.from_m) +
-                               ", " + ShortNumber(reach.to_m) + "] m at most in this run" +
+                               ShortNumber(end_of(entries[first])) + "] m is reached by no wheel: they are on [" +
+                               ShortNumber(reach.from_m) + ", " + ShortNumber(reach.to_m) + "] m at most in this run" +
                                (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
 }
 
@@ -96,8 +88,7 @@ void WarnOfStart(const ScenarioParams& scenario, std::vector<Warning>& warnings)
   if (scenario.train.consist.empty()) return;
   const double front_m = scenario.start_position_m + 0.5 * scenario.train.consist.front().vehicle.length_m;
   double rear_m = front_m;
-  for (const ConsistGroupParams& group : scenario.train.consist)
-    rear_m -= group.count * group.vehicle.length_m;
+  for (const ConsistGroupParams& group : scenario.train.consist) rear_m -= group.count * group.vehicle.length_m;
   if (rear_m >= route.from_m && front_m <= route.to_m) return;
   warnings.push_back({"start_position_m", "the train begins between " + ShortNumber(rear_m) + " m and " +
                                               ShortNumber(front_m) + " m, beyond an end of its route (" +
@@ -116,8 +107,7 @@ void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnin
     const std::string part = "train.consist" + ListIndex(i) + ".vehicle.traction.tractive_effort.";
     const double adhesion = effort.starting_effort_n / vehicle.DrivenWeight();
     if (adhesion > kLargestAdhesion) {
-      warnings.push_back({part + "starting_effort_n", part + "starting_effort_n asks for " +
-                                                          ShortNumber(adhesion) +
+      warnings.push_back({part + "starting_effort_n", part + "starting_effort_n asks for " + ShortNumber(adhesion) +
                                                           " of the weight on the driven wheels, more than " +
                                                           ShortNumber(kLargestAdhesion) +
                                                           ", which a dry rail gives to a modern locomotive"});
@@ -133,8 +123,7 @@ void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnin
 
 /// Warns of groups of LTD vehicles whose brake asks for more than the rail gives somewhere.
 void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
-  if (!scenario.brake || scenario.brake->kind != BrakeSystemKind::kEmpirical ||
-      !scenario.pressure_table.empty())
+  if (!scenario.brake || scenario.brake->kind != BrakeSystemKind::kEmpirical || !scenario.pressure_table.empty())
     return;
   const double pressure_pa = 1e3 * scenario.brake->empirical.emergency.cylinder_pressure_kpa;
   const Stretch reach = ReachOf(scenario);
@@ -145,17 +134,16 @@ void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& w
     double least = vehicle.wheel_rail.adhesion.friction_coefficient;
     for (const FrictionPatchParams& patch : scenario.track.Patches()) {
       if (patch.from_m >= reach.to_m || patch.to_m <= reach.from_m) continue;
-      least = std::min(least,
-                       patch.adhesion ? patch.adhesion->friction_coefficient : *patch.friction_coefficient);
+      least = std::min(least, patch.adhesion ? patch.adhesion->friction_coefficient : *patch.friction_coefficient);
     }
     const double asked = ShoeForce(vehicle.Rigging(), pressure_pa, 0.0) / vehicle.Weight();
     if (asked <= least) continue;
     const std::string key = "train.consist" + ListIndex(i) + ".vehicle";
-    warnings.push_back({key, "the brake of " + key + " asks in an emergency for up to " + ShortNumber(asked) +
-                                 " of its weight where the rail gives " + ShortNumber(least) +
-                                 (scenario.adhesion_limit
-                                      ? ": adhesion_limit holds the wheel-rail force of its ltd model to that"
-                                      : ", and its ltd model applies all of it: adhesion_limit is false")});
+    warnings.push_back(
+        {key, "the brake of " + key + " asks in an emergency for up to " + ShortNumber(asked) +
+                  " of its weight where the rail gives " + ShortNumber(least) +
+                  (scenario.adhesion_limit ? ": adhesion_limit holds the wheel-rail force of its ltd model to that"
+                                           : ", and its ltd model applies all of it: adhesion_limit is false")});
   }
 }
 
@@ -174,21 +162,19 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const ConsistGroupParams& group = train.consist[i];
     if (group.vehicles_per_unit == 1) continue;
-    WarnOfConnection(scenario, "train.consist" + ListIndex(i) + ".unit_connection", group.unit_connection,
-                     lightest_kg, warnings);
+    WarnOfConnection(scenario, "train.consist" + ListIndex(i) + ".unit_connection", group.unit_connection, lightest_kg,
+                     warnings);
   }
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const WheelsetParams& wheelset = train.consist[i].vehicle.wheelset;
-    if (train.consist[i].vehicle.IsOneMass() || wheelset.accept_large_inertia ||
-        !(wheelset.InertiaRatio() > 1.0))
+    if (train.consist[i].vehicle.IsOneMass() || wheelset.accept_large_inertia || !(wheelset.InertiaRatio() > 1.0))
       continue;
     const std::string group = "train.consist" + ListIndex(i) + ".vehicle.wheelset.";
-    warnings.push_back(
-        {group + "pitch_inertia_kgm2",
-         group + "pitch_inertia_kgm2 is " + ShortNumber(wheelset.InertiaRatio()) +
-             " times mass_kg wheel_radius_m^2, more than if all mass were at the tread (a real "
-             "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and "
-             "turn again sooner than real ones; if that is meant, say accept_large_inertia: true"});
+    warnings.push_back({group + "pitch_inertia_kgm2",
+                        group + "pitch_inertia_kgm2 is " + ShortNumber(wheelset.InertiaRatio()) +
+                            " times mass_kg wheel_radius_m^2, more than if all mass were at the tread (a real "
+                            "freight wheelset has 100 to 130 kg m2): its wheels lock later, slide less far and "
+                            "turn again sooner than real ones; if that is meant, say accept_large_inertia: true"});
   }
   for (std::size_t i = 0; i < train.consist.size(); ++i) {
     const VehicleModel model = scenario.ModelOfGroup(i);
@@ -209,12 +195,11 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     if (!scenario.Uses(model)) continue;
     const auto leaves_out = [&](const std::string& key, std::size_t entries) {
       if (entries == 0) return;
-      warnings.push_back({key, std::string("the ") + ModelName(model) + " model leaves out " + key + " (" +
-                                   Counted(entries) + ")"});
+      warnings.push_back(
+          {key, std::string("the ") + ModelName(model) + " model leaves out " + key + " (" + Counted(entries) + ")"});
     };
     leaves_out("track.dips", scenario.track.dips.size());
-    if (!scenario.adhesion_limit)
-      leaves_out("track.friction_patches", scenario.track.friction_patches.size());
+    if (!scenario.adhesion_limit) leaves_out("track.friction_patches", scenario.track.friction_patches.size());
     const auto of_rail = std::count_if(scenario.commands.begin(), scenario.commands.end(),
                                        [](const DriverCommand& command) { return command.IsOfRail(); });
     if (!scenario.adhesion_limit && of_rail > 0)
@@ -227,12 +212,11 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
     const Stretch reach = ReachOf(scenario);
     if (scenario.Uses(VehicleModel::kTwoD))
       WarnOfReach(
-          "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; },
-          reach, warnings);
+          "track.dips", scenario.track.dips, [](const DipParams& dip) { return dip.from_m + dip.length_m; }, reach,
+          warnings);
     WarnOfReach(
         "track.friction_patches", scenario.track.friction_patches,
-        [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach,
-        warnings);
+        [](const FrictionPatchParams& patch) { return patch.to_m + 0.5 * patch.RampLength(); }, reach, warnings);
   }
   if (scenario.Uses(VehicleModel::kTwoD)) {
     const std::vector<VehicleModel> models = scenario.VehicleModels();
@@ -241,8 +225,8 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
       const VehicleModel model = models[VehicleIndex(number, static_cast<int>(models.size()))];
       if (model == VehicleModel::kTwoD) continue;
       const std::string key = "detail_vehicles" + ListIndex(i);
-      warnings.push_back({key, key + " is " + std::to_string(number) + ", a vehicle of the " +
-                                   ModelName(model) + " model, which has no details"});
+      warnings.push_back({key, key + " is " + std::to_string(number) + ", a vehicle of the " + ModelName(model) +
+                                   " model, which has no details"});
     }
   }
   if (!train.consist.empty()) WarnOfAdhesionLimit(scenario, warnings);
@@ -260,12 +244,11 @@ std::vector<Warning> Warnings(const ScenarioParams& scenario) {
                           "the brake pipe stays closed where a connection breaks: the pressures come from "
                           "pressure_table"});
     }
-    const auto of_brake =
-        std::count_if(scenario.commands.begin(), scenario.commands.end(),
-                      [](const DriverCommand& command) { return command.IsOfTrainBrake(); });
+    const auto of_brake = std::count_if(scenario.commands.begin(), scenario.commands.end(),
+                                        [](const DriverCommand& command) { return command.IsOfTrainBrake(); });
     if (of_brake > 0) {
-      warnings.push_back({"commands", "commands of the brake (" +
-                                          Counted(static_cast<std::size_t>(of_brake)) + ") are" + unused});
+      warnings.push_back(
+          {"commands", "commands of the brake (" + Counted(static_cast<std::size_t>(of_brake)) + ") are" + unused});
     }
   }
   return warnings;

@@ -126,11 +126,9 @@ std::vector<WheelsetSlides> SlideResults::Wheelsets() const {
 
 TrackWork SlideResults::Track() const {
   TrackWork track = track_;
-  for (std::size_t i = 0; i < deposited_.size(); ++i)
-    Deposit(kinds_[kind_[i]], deposited_[i], seen_[i], track);
+  for (std::size_t i = 0; i < deposited_.size(); ++i) Deposit(kinds_[kind_[i]], deposited_[i], seen_[i], track);
   std::size_t unused = 0;
-  while (unused < track.creep_j.size() && track.creep_j[unused] == 0.0 && track.brake_j[unused] == 0.0)
-    ++unused;
+  while (unused < track.creep_j.size() && track.creep_j[unused] == 0.0 && track.brake_j[unused] == 0.0) ++unused;
   const auto begin = static_cast<std::ptrdiff_t>(unused);
   track.creep_j.erase(track.creep_j.begin(), track.creep_j.begin() + begin);
   track.brake_j.erase(track.brake_j.begin(), track.brake_j.begin() + begin);
@@ -141,8 +139,7 @@ TrackWork SlideResults::Track() const {
 std::vector<double> SlideResults::Memory() const {
   const std::vector<SlideEvent> slides = Slides();
   std::vector<double> memory = {static_cast<double>(slides.size()), static_cast<double>(track_.from_m),
-                                static_cast<double>(track_.creep_j.size()),
-                                static_cast<double>(deposited_.size())};
+                                static_cast<double>(track_.creep_j.size()), static_cast<double>(deposited_.size())};
   const auto append = [&memory](const void* numbers, std::size_t count) {
     if (count == 0) return;
     const std::size_t at = memory.size();

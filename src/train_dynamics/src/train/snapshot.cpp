@@ -62,8 +62,7 @@ ByteReader ContentsOf(const Bytes& bytes) { return {bytes.data() + kHead, bytes.
 
 /// @param what  "a checkpoint", for messages
 std::uint64_t FormatOf(const Bytes& bytes, const char* mark, const std::string& what) {
-  if (bytes.size() < kWord || std::memcmp(bytes.data(), mark, kWord) != 0)
-    throw SnapshotError("is not " + what);
+  if (bytes.size() < kWord || std::memcmp(bytes.data(), mark, kWord) != 0) throw SnapshotError("is not " + what);
   return ByteReader(bytes.data() + kWord, bytes.size() - kWord).Word();
 }
 
@@ -98,8 +97,7 @@ constexpr const char* kTrainMark = "TBTRAIN\n";
 
 void CheckRows(const std::vector<StateRow>& rows, int vehicles) {
   if (rows.size() == static_cast<std::size_t>(vehicles)) return;
-  throw SnapshotError("is of " + std::to_string(rows.size()) + " vehicle(s), not of " +
-                      std::to_string(vehicles));
+  throw SnapshotError("is of " + std::to_string(rows.size()) + " vehicle(s), not of " + std::to_string(vehicles));
 }
 
 Bytes Encode(const BlockSnapshot& snapshot) {
@@ -148,10 +146,10 @@ Bytes Encode(const TrainCheckpoint& checkpoint) {
 TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes) {
   const std::uint64_t format = FormatOf(bytes, kTrainMark, "a checkpoint of a train");
   if (format != kTrainFormat) {
-    throw SnapshotError(
-        "is a checkpoint of format version " + std::to_string(format) + ", written by " + WriterOf(bytes) +
-        "; this program, train_brake " TRAIN_BRAKE_VERSION ", reads version " + std::to_string(kTrainFormat) +
-        ": finish the run with the build that wrote it, or run its config.yaml again");
+    throw SnapshotError("is a checkpoint of format version " + std::to_string(format) + ", written by " +
+                        WriterOf(bytes) + "; this program, train_brake " TRAIN_BRAKE_VERSION ", reads version " +
+                        std::to_string(kTrainFormat) +
+                        ": finish the run with the build that wrote it, or run its config.yaml again");
   }
   ByteReader reader = ReaderOf(bytes);
   TrainCheckpoint checkpoint;

@@ -32,8 +32,7 @@ bool Spin(const Condition& done) {
 int UsableCores() {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
-  return std::max(
-      1, static_cast<int>(std::thread::hardware_concurrency()));  // more cores than the set has room for
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // more cores than the set has room for
 }
 
 ThreadTeam::ThreadTeam(int size) : claims_(size) {

@@ -36,8 +36,7 @@ ThreadedBlock::ThreadedBlock(const ScenarioParams& scenario, const Consist& cons
   for (int i = 0, begin = 0; i < size; ++i) {
     // The last vehicle that an equal part of the work reaches; at least one vehicle for each share.
     const auto beyond = std::upper_bound(before.begin(), before.end(), before.back() * (i + 1) / size);
-    const int end =
-        std::clamp(static_cast<int>(beyond - before.begin()) - 1, begin + 1, count - (size - 1 - i));
+    const int end = std::clamp(static_cast<int>(beyond - before.begin()) - 1, begin + 1, count - (size - 1 - i));
     shares_.push_back({begin, MakeVehicleBlock(scenario, consist, first + begin, end - begin)});
     begin = end;
   }

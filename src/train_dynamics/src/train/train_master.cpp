@@ -37,8 +37,7 @@ TrainMaster::TrainMaster(const ScenarioParams& scenario, const Consist& consist,
   record_.vehicles = reply_;
   record_.acceleration_mps2.assign(consist.vehicles(), std::numeric_limits<double>::quiet_NaN());
   for (int i = 0; i < consist.vehicles(); ++i) mass_kg_.push_back(consist.vehicle(i).TotalMass());
-  for (const ConnectionParams& type : consist.connection_types)
-    can_part_ = can_part_ || type.strength_n > 0.0;
+  for (const ConnectionParams& type : consist.connection_types) can_part_ = can_part_ || type.strength_n > 0.0;
   if (scenario.driver && scenario.brake) {
     const double period = std::round(scenario.driver->period_s / scenario.exchange_interval_s);
     driver_ = Driver{MakeDriversTrain(*scenario.driver, *scenario.brake, consist),
@@ -132,8 +131,7 @@ void TrainMaster::Exchange() {
   brake_.PressuresAt(middle_s, request_.cylinder_pressure_pa);
   locomotives_.Advance(middle_s, scenario_.exchange_interval_s, reply_.head_velocity_mps, request_);
 
-  curves_.Evaluate(scenario_.exchange_interval_s, reply_.head_displacement_m, reply_.head_velocity_mps,
-                   request_);
+  curves_.Evaluate(scenario_.exchange_interval_s, reply_.head_displacement_m, reply_.head_velocity_mps, request_);
   breakaway_.Evaluate(reply_.head_displacement_m, reply_.head_velocity_mps, request_);
 
   const std::uint64_t next = exchange_ + 1;
@@ -203,8 +201,7 @@ const DriverView& TrainMaster::View(double ahead_m, bool is_shown_couplers) {
   for (const double pressure_pa : pressure_pa_)
     view.mean_cylinder_kpa += 1e-3 * pressure_pa / static_cast<double>(pressure_pa_.size());
   view.brake_pipe_kpa = std::numeric_limits<double>::quiet_NaN();
-  if (const PneumaticBrake* machine = brake.pneumatic())
-    view.brake_pipe_kpa = 1e-3 * machine->PipePressure(0);
+  if (const PneumaticBrake* machine = brake.pneumatic()) view.brake_pipe_kpa = 1e-3 * machine->PipePressure(0);
   view.coupler_force_n.clear();
   if (is_shown_couplers) {
     InTrainForces forces = forces_;  // of a copy: the exchange evaluates them itself
@@ -222,9 +219,8 @@ void TrainMaster::GiveCommands() {
     momentum += mass_kg_[i] * reply_.head_velocity_mps[i];
   }
   const std::size_t known = given_.size();
-  schedule_.Judge(
-      {exchange_, time_s(), scenario_.start_position_m + reply_.head_displacement_m[0], momentum / mass},
-      given_);
+  schedule_.Judge({exchange_, time_s(), scenario_.start_position_m + reply_.head_displacement_m[0], momentum / mass},
+                  given_);
   for (std::size_t i = known; i < given_.size(); ++i) Give(given_[i]);
   if (!DriverIsDue()) return;
   const BuiltInDriverParams& params = *scenario_.driver;

@@ -24,8 +24,7 @@ LtdState<double> StartState(const LtdVehicle& /*vehicle*/, double origin_m, doub
   return state;
 }
 template <int kPerBogie>
-WagonState<double, kPerBogie> StartState(const BogieVehicle<kPerBogie>& wagon, double origin_m,
-                                         double speed_mps) {
+WagonState<double, kPerBogie> StartState(const BogieVehicle<kPerBogie>& wagon, double origin_m, double speed_mps) {
   return StaticEquilibrium(wagon, origin_m, speed_mps);
 }
 
@@ -81,8 +80,7 @@ std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const
 
 /// Names the first body that is not where a body can be.
 template <int kPerBogie>
-std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
-                    const WagonState<double, kPerBogie>& s) {
+std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track, const WagonState<double, kPerBogie>& s) {
   const OverRail<double, kPerBogie> over = OverRailOf(wagon, track, s);
   for (int b = 0; b < kBodiesOf<kPerBogie>; ++b) {
     const auto describe = [b](const char* what, double value, const char* unit) {
@@ -90,8 +88,7 @@ std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track,
     };
     const auto wrong = [](double value, double limit) { return !(std::abs(value) < limit); };
     if (wrong(s.velocity.x[b], state_limits::kSpeed)) return describe("speed", s.velocity.x[b], "m/s");
-    if (wrong(s.velocity.z[b], state_limits::kSpeed))
-      return describe("vertical speed", s.velocity.z[b], "m/s");
+    if (wrong(s.velocity.z[b], state_limits::kSpeed)) return describe("vertical speed", s.velocity.z[b], "m/s");
     if (wrong(over.z[b], state_limits::kMovement))
       return describe("vertical displacement over the rail", over.z[b], "m");
     if (b < kWheelset1 && wrong(over.pitch[b], state_limits::kPitch))
@@ -113,8 +110,8 @@ class EqualVehicles : public VehicleBatch<Vehicle> {
   using VehicleBatch<Vehicle>::VehicleBatch;
 
   /// As VehicleBatch::Advance, in the exchange that is asked for.
-  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads,
-               const ReplyPlaces& reply, bool with_output) {
+  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads, const ReplyPlaces& reply,
+               bool with_output) {
     return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, with_output);
   }
   void TellSlides(int /*first*/, bool /*ongoing*/, double /*time_s*/, std::vector<SlideEvent>& /*slides*/) {}
@@ -136,8 +133,8 @@ class EqualVehicles : public VehicleBatch<Vehicle> {
 
 /// One step of equal vehicles, the last of an exchange with its output.
 template <class Vehicle>
-bool AdvanceStep(EqualVehicles<Vehicle>& vehicles, const Track& track, const ExchangeRequest& request,
-                 int step, const LoadPlaces& loads, const ReplyPlaces& reply, bool with_output) {
+bool AdvanceStep(EqualVehicles<Vehicle>& vehicles, const Track& track, const ExchangeRequest& request, int step,
+                 const LoadPlaces& loads, const ReplyPlaces& reply, bool with_output) {
   const bool shows = with_output && step + 1 == request.steps;
   return vehicles.VehicleBatch<Vehicle>::Advance(track, request.dt_s, 1, loads, reply, shows);
 }
@@ -263,8 +260,8 @@ class WatchedVehicles : public Vehicles {
   explicit WatchedVehicles(Arguments&&... arguments)
       : Vehicles(std::forward<Arguments>(arguments)...), watch_(this->size()) {}
 
-  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads,
-               const ReplyPlaces& reply, bool with_output) {
+  bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads, const ReplyPlaces& reply,
+               bool with_output) {
     const bool sound = Vehicles::Advance(track, request, loads, reply, with_output || watch_.watching());
     const double interval_s = request.steps * request.dt_s;
     watch_.Follow(interval_s * static_cast<double>(request.exchange + 1), interval_s, *this);
@@ -290,19 +287,17 @@ class WatchedVehicles : public Vehicles {
 };
 
 /// A model over lanes is one more alternative here.
-using Batch =
-    std::variant<WatchedVehicles<EqualVehicles<Wagon>>, WatchedVehicles<EqualVehicles<SixAxleVehicle>>,
-                 EqualVehicles<LtdVehicle>, WatchedVehicles<ProtectedVehicles<Wagon>>,
-                 WatchedVehicles<ProtectedVehicles<SixAxleVehicle>>,
-                 WatchedVehicles<SlipControlledVehicles<EqualVehicles<Wagon>>>,
-                 WatchedVehicles<SlipControlledVehicles<EqualVehicles<SixAxleVehicle>>>,
-                 WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<Wagon>>>,
-                 WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<SixAxleVehicle>>>>;
+using Batch = std::variant<WatchedVehicles<EqualVehicles<Wagon>>, WatchedVehicles<EqualVehicles<SixAxleVehicle>>,
+                           EqualVehicles<LtdVehicle>, WatchedVehicles<ProtectedVehicles<Wagon>>,
+                           WatchedVehicles<ProtectedVehicles<SixAxleVehicle>>,
+                           WatchedVehicles<SlipControlledVehicles<EqualVehicles<Wagon>>>,
+                           WatchedVehicles<SlipControlledVehicles<EqualVehicles<SixAxleVehicle>>>,
+                           WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<Wagon>>>,
+                           WatchedVehicles<SlipControlledVehicles<ProtectedVehicles<SixAxleVehicle>>>>;
 
 /// @param centre_m  of each vehicle, at the start
 template <class Vehicle>
-EqualVehicles<Vehicle> MakeBatch(const Vehicle& vehicle, double speed_mps,
-                                 const std::vector<double>& centre_m) {
+EqualVehicles<Vehicle> MakeBatch(const Vehicle& vehicle, double speed_mps, const std::vector<double>& centre_m) {
   auto state = StartState(vehicle, 0.0, speed_mps);
   std::vector<typename VehicleBatch<Vehicle>::State> states;
   for (const double at : centre_m) {
@@ -312,8 +307,8 @@ EqualVehicles<Vehicle> MakeBatch(const Vehicle& vehicle, double speed_mps,
   return EqualVehicles<Vehicle>(vehicle, BestLaneKernels(static_cast<int>(states.size())), states);
 }
 
-Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario,
-                double speed_mps, const std::vector<double>& centre_m) {
+Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioParams& scenario, double speed_mps,
+                const std::vector<double>& centre_m) {
   if (model == VehicleModel::kTwoD) {
     return WithBogieVehicle(params, [&](const auto& vehicle) -> Batch {
       auto vehicles = MakeBatch(vehicle, speed_mps, centre_m);
@@ -330,8 +325,7 @@ Batch MakeBatch(VehicleModel model, const VehicleParams& params, const ScenarioP
     });
   }
   const bool with_inertia = model == VehicleModel::kLtd;
-  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator, scenario.adhesion_limit), speed_mps,
-                   centre_m);
+  return MakeBatch(LtdVehicle(params, with_inertia, scenario.integrator, scenario.adhesion_limit), speed_mps, centre_m);
 }
 
 /// Vehicles of this program's own models, in one batch for each run of equal vehicles.
@@ -347,9 +341,9 @@ class BatchedBlock : public VehicleBlock {
         centre_m.push_back(scenario.start_position_m + consist.centre_m[i]);
       }
       if (!scenario.train.consist[group].external.empty()) continue;
-      runs_.push_back({begin, model,
-                       MakeBatch(model, consist.vehicle_types[group], scenario,
-                                 scenario.InitialSpeedOfGroup(group), centre_m)});
+      runs_.push_back(
+          {begin, model,
+           MakeBatch(model, consist.vehicle_types[group], scenario, scenario.InitialSpeedOfGroup(group), centre_m)});
     }
   }
 
@@ -414,8 +408,8 @@ class BatchedBlock : public VehicleBlock {
               const StateRow& row = rows[run.begin - first_ + i];
               if (batch.Restore(i, row) == row.size() && !row.empty()) continue;
               throw SnapshotError("has " + std::to_string(row.size()) + " numbers of vehicle " +
-                                  std::to_string(run.begin + i + 1) + ", but one of the " +
-                                  ModelName(run.model) + " model has, with its equipment, others");
+                                  std::to_string(run.begin + i + 1) + ", but one of the " + ModelName(run.model) +
+                                  " model has, with its equipment, others");
             }
           },
           run.batch);
@@ -468,8 +462,8 @@ constexpr int MostNumbers(const std::variant<Batches...>*) {
 
 int MostStateNumbers() { return MostNumbers(static_cast<const Batch*>(nullptr)); }
 
-std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
-                                               int first, int count) {
+std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist, int first,
+                                               int count) {
   return std::make_unique<BatchedBlock>(scenario, consist, first, count);
 }
 

@@ -13,8 +13,7 @@ BatchProtection<Vehicle>::BatchProtection(const SlideProtectionParams& params, d
       pressure_pa_(static_cast<std::size_t>(PaddedToLanes(batch.size())) * kMostWheelsets, 0.0) {}
 
 template <class Vehicle>
-const double* BatchProtection<Vehicle>::Step(long step, const VehicleBatch<Vehicle>& batch,
-                                             const double* supply_pa) {
+const double* BatchProtection<Vehicle>::Step(long step, const VehicleBatch<Vehicle>& batch, const double* supply_pa) {
   const double radius_m = batch.vehicle().rolling.radius_m;
   const bool samples = protection_.Samples(step);
   const auto place = [this](int vehicle, int wheelset) -> double& {

@@ -16,8 +16,7 @@ struct SlideWatch<Vehicle>::Motion {
   double Slip() const { return std::abs(speed_mps - tread_mps); }
   bool Slides() const { return Slip() > slide::kCreepage * std::max(std::abs(speed_mps), slide::kSlowest); }
   bool IsLocked() const {
-    return std::abs(speed_mps) > slide::kSlowest &&
-           std::abs(tread_mps) < slide::kLocked * std::abs(speed_mps);
+    return std::abs(speed_mps) > slide::kSlowest && std::abs(tread_mps) < slide::kLocked * std::abs(speed_mps);
   }
 };
 
@@ -50,8 +49,7 @@ void SlideWatch<Vehicle>::EndLock(const Motion& now, Followed& f) {
 }
 
 template <class Vehicle>
-SlideEvent SlideWatch<Vehicle>::EventOf(const Followed& followed, const Motion& now, double time_s,
-                                        int wheelset) {
+SlideEvent SlideWatch<Vehicle>::EventOf(const Followed& followed, const Motion& now, double time_s, int wheelset) {
   Followed f = followed;
   EndLock(now, f);
   SlideEvent event;
@@ -84,8 +82,7 @@ void SlideWatch<Vehicle>::Follow(double time_s, double interval_s, const Vehicle
 }
 
 template <class Vehicle>
-void SlideWatch<Vehicle>::Update(double time_s, double interval_s, const VehicleBatch<Vehicle>& batch,
-                                 int i) {
+void SlideWatch<Vehicle>::Update(double time_s, double interval_s, const VehicleBatch<Vehicle>& batch, int i) {
   sliding_[i] = 0;
   for (int j = 0; j < kWheelsets; ++j) {
     Followed& f = vehicles_[i].wheelset[j];
@@ -113,8 +110,7 @@ void SlideWatch<Vehicle>::Update(double time_s, double interval_s, const Vehicle
       const double normal = batch.OutputNumberOf(i, j);
       if (normal > 0.0) f.largest_adhesion = std::max(f.largest_adhesion, std::abs(force) / normal);
     }
-    f.largest_creepage =
-        std::max(f.largest_creepage, now.Slip() / std::max(std::abs(now.speed_mps), slide::kSlowest));
+    f.largest_creepage = std::max(f.largest_creepage, now.Slip() / std::max(std::abs(now.speed_mps), slide::kSlowest));
     if (!now.IsLocked()) {
       EndLock(now, f);
     } else if (f.lock_s > 0.0) {
@@ -175,14 +171,12 @@ bool SlideWatch<Vehicle>::Restore(int i, const double* numbers, std::size_t coun
     std::memcpy(static_cast<void*>(vehicle.wheelset.data()), numbers, kOwn * sizeof(double));
     vehicle.ended.resize((count - kOwn) / kSlideNumbers);
     for (std::size_t k = 0; k < vehicle.ended.size(); ++k) {
-      std::memcpy(static_cast<void*>(&vehicle.ended[k]), numbers + kOwn + k * kSlideNumbers,
-                  sizeof(SlideEvent));
+      std::memcpy(static_cast<void*>(&vehicle.ended[k]), numbers + kOwn + k * kSlideNumbers, sizeof(SlideEvent));
     }
     for (const Followed& f : vehicle.wheelset) sliding_[i] |= static_cast<char>(f.slides != 0.0);
   }
   watching_ = std::any_of(sliding_.begin(), sliding_.end(), [](char slides) { return slides != 0; });
-  has_ended_ =
-      std::any_of(vehicles_.begin(), vehicles_.end(), [](const PerVehicle& of) { return !of.ended.empty(); });
+  has_ended_ = std::any_of(vehicles_.begin(), vehicles_.end(), [](const PerVehicle& of) { return !of.ended.empty(); });
   return true;
 }
 

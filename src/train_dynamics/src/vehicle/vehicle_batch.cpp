@@ -25,13 +25,9 @@ LaneKernels::StepPacks<Wagon> StepOf(const LaneKernels& kernels, const Wagon&) {
 LaneKernels::StepPacks<SixAxleVehicle> StepOf(const LaneKernels& kernels, const SixAxleVehicle&) {
   return kernels.step_six_axle;
 }
-LaneKernels::StepPacks<LtdVehicle> StepOf(const LaneKernels& kernels, const LtdVehicle&) {
-  return kernels.step_ltd;
-}
+LaneKernels::StepPacks<LtdVehicle> StepOf(const LaneKernels& kernels, const LtdVehicle&) { return kernels.step_ltd; }
 
-LaneKernels::RecordPack<Wagon> RecordOf(const LaneKernels& kernels, const Wagon&) {
-  return kernels.record_wagons;
-}
+LaneKernels::RecordPack<Wagon> RecordOf(const LaneKernels& kernels, const Wagon&) { return kernels.record_wagons; }
 LaneKernels::RecordPack<SixAxleVehicle> RecordOf(const LaneKernels& kernels, const SixAxleVehicle&) {
   return kernels.record_six_axle;
 }
@@ -65,8 +61,7 @@ void ForEachPlace(const Function& function, RecordPlaces& places) {
 
 template <class Places>
 Places Behind(Places at, int vehicles) {
-  ForEachPlace([vehicles](const RecordInfo& field, double*& place) { place += vehicles * field.numbers; },
-               at);
+  ForEachPlace([vehicles](const RecordInfo& field, double*& place) { place += vehicles * field.numbers; }, at);
   return at;
 }
 

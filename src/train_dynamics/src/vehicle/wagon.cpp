@@ -25,8 +25,7 @@ using VerticalVector = Eigen::Matrix<double, 2 * kBodiesOf<kPerBogie>, 1>;
 
 /// Vertical and pitching forces on the bodies at rest, wedges without friction.
 template <int kPerBogie>
-VerticalVector<kPerBogie> VerticalForces(const BogieVehicle<kPerBogie>& w,
-                                         const VerticalVector<kPerBogie>& q) {
+VerticalVector<kPerBogie> VerticalForces(const BogieVehicle<kPerBogie>& w, const VerticalVector<kPerBogie>& q) {
   constexpr int kBodies = kBodiesOf<kPerBogie>;
   BodyVector<double, kPerBogie> position{}, force{};
   for (int i = 0; i < kBodies; ++i) {
@@ -57,8 +56,7 @@ template <int kPerBogie>
 void CheckWedgeCoupling(const BogieVehicle<kPerBogie>& w) {
   const double offset = w.wedge.params.offset_m;
   const double both = w.inv_mass_per_kg[kFrontBolster] + w.inv_mass_per_kg[kFrontFrame];
-  const double turn =
-      offset * offset * (w.inv_inertia_per_kgm2[kFrontBolster] + w.inv_inertia_per_kgm2[kFrontFrame]);
+  const double turn = offset * offset * (w.inv_inertia_per_kgm2[kFrontBolster] + w.inv_inertia_per_kgm2[kFrontFrame]);
   constexpr double kStrongestCoupling = 0.5;
   if (std::abs(both - turn) > kStrongestCoupling * (both + turn)) {
     throw std::invalid_argument(
@@ -179,13 +177,10 @@ double KineticEnergy(const BogieVehicle<kPerBogie>& w, const WagonState<double, 
 }
 
 template <int kPerBogie>
-double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track,
-                       const WagonState<double, kPerBogie>& s) {
+double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<double, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const ElementVector<double, kPerBogie> e = ElementsOf(w, s.position);
-  const auto spring = [](const LinearSpringDamper& law, double d) {
-    return 0.5 * law.stiffness_n_per_m * d * d;
-  };
+  const auto spring = [](const LinearSpringDamper& law, double d) { return 0.5 * law.stiffness_n_per_m * d * d; };
   double energy = 0.0;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     energy += 2.0 * (spring(p.adaptor_pad, e.pad_x[i]) + spring(p.adaptor_pad, e.pad_z[i]));
@@ -202,8 +197,7 @@ double PotentialEnergy(const BogieVehicle<kPerBogie>& w, const Track& track,
   for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) energy += kGravity * w.mass_kg[i] * s.position.z[i];
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
-    const RailHeight<double> rail =
-        RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
+    const RailHeight<double> rail = RailHeightAt(track, s.origin_m + (s.position.x[b] + w.wheelset_offset_m[i]));
     energy += 2.0 * OneSidedEnergy(p.wheel_rail.normal.stiffness_n_per_m, rail.height - s.position.z[b]);
   }
   return energy;

@@ -77,8 +77,7 @@ WagonModes<kPerBogie> AnalyseModes(const BogieVehicle<kPerBogie>& wagon) {
   constexpr double kProbe = 1e-6;  // [m, rad, m/s, rad/s]: small against every gap at the equilibrium
   for (int k = 0; k < kFreedoms; ++k) {
     const Vector probe = kProbe * Vector::Unit(kFreedoms, k);
-    stiffness.col(k) =
-        (Forces(wagon, rest - probe, still) - Forces(wagon, rest + probe, still)) / (2.0 * kProbe);
+    stiffness.col(k) = (Forces(wagon, rest - probe, still) - Forces(wagon, rest + probe, still)) / (2.0 * kProbe);
     damping.col(k) = (Forces(wagon, rest, -probe) - Forces(wagon, rest, probe)) / (2.0 * kProbe);
   }
   stiffness = mass.cwiseInverse().asDiagonal() * stiffness;

@@ -18,7 +18,8 @@ namespace train_node {
 ///   ...
 ///   parameters.ThrowIfWrong();  // when all have been read
 ///
-/// A value of a wrong type or out of its range is noted and the default is returned, so that all errors are told at once.
+/// A value of a wrong type or out of its range is noted and the default is returned, so that all errors are told at
+/// once.
 class NodeParameters {
  public:
   /// Reads what the ROS master has under the node's name; needs ros::init, but no registration of the node.
@@ -49,8 +50,8 @@ class NodeParameters {
 
  private:
   /// The value if it is there and of that type, or else null after noting the error.
-  const XmlRpc::XmlRpcValue* Find(const std::string& name,
-                                  std::initializer_list<XmlRpc::XmlRpcValue::Type> types, const char* rule);
+  const XmlRpc::XmlRpcValue* Find(const std::string& name, std::initializer_list<XmlRpc::XmlRpcValue::Type> types,
+                                  const char* rule);
 
   XmlRpc::XmlRpcValue values_;
   std::set<std::string> known_;

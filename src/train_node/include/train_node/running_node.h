@@ -9,7 +9,7 @@ namespace train_node {
 /// a name to the last node that asks and ends the one that had it, which would end a run; so a node looks first.
 struct RunningNode {
   enum class State {
-    kNone,  ///< no node is registered, or the registered one does not exist any more (killed, its machine gone)
+    kNone,    ///< no node is registered, or the registered one does not exist any more (killed, its machine gone)
     kSilent,  ///< a process accepts connections and does not answer: stopped, or in a debugger
     kAlive,
   };

@@ -42,8 +42,8 @@ class BagWriter {
   template <class Message>
   int AddTopic(const std::string& name, bool latched = false) {
     namespace traits = ros::message_traits;
-    return AddConnection(name, traits::datatype<Message>(), traits::md5sum<Message>(),
-                         traits::definition<Message>(), latched);
+    return AddConnection(name, traits::datatype<Message>(), traits::md5sum<Message>(), traits::definition<Message>(),
+                         latched);
   }
 
   /// @param time  not before that of the last message

@@ -33,15 +33,13 @@ void Convert(const train_dynamics::TrainRecord& record, const train_dynamics::Wa
              train_brake_msgs::WagonState& message);
 
 /// @param time_s  of the first record after it
-void Convert(const train_dynamics::GivenCommand& given, double time_s,
-             train_brake_msgs::GivenCommand& message);
+void Convert(const train_dynamics::GivenCommand& given, double time_s, train_brake_msgs::GivenCommand& message);
 
 void Convert(const train_dynamics::DriverView& view, train_brake_msgs::DriverView& message);
 
 /// A command for the start of an exchange, from a message.
 /// @throws std::invalid_argument if there is no such kind, or the number that belongs to it is missing
-train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message,
-                                        std::uint64_t exchange);
+train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange);
 
 /// Topic of the commands that were given to the running train, in its namespace.
 inline constexpr const char* kGivenTopic = "driver/given";
@@ -52,8 +50,8 @@ inline constexpr const char* kScenarioTopic = "scenario";
 /// "# train_brake VERSION": the first line of each scenario that this program writes.
 std::string VersionLine();
 
-/// The scenario with everything resolved, as YAML that runs again, behind VersionLine: what the viewer of a run or of a bag
-/// needs to know.
+/// The scenario with everything resolved, as YAML that runs again, behind VersionLine: what the viewer of a run or of a
+/// bag needs to know.
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario);
 
 }  // namespace train_results

@@ -74,14 +74,14 @@ struct BrakePressuresView {
 template <class View>
 std::uint32_t SerializedLength(const View& view) {
   ros::serialization::LStream stream;
-  ros::serialization::Serializer<typename View::Message>::template allInOne<ros::serialization::LStream,
-                                                                            const View&>(stream, view);
+  ros::serialization::Serializer<typename View::Message>::template allInOne<ros::serialization::LStream, const View&>(
+      stream, view);
   return stream.getLength();
 }
 template <class View>
 void Serialize(ros::serialization::OStream& stream, const View& view) {
-  ros::serialization::Serializer<typename View::Message>::template allInOne<ros::serialization::OStream,
-                                                                            const View&>(stream, view);
+  ros::serialization::Serializer<typename View::Message>::template allInOne<ros::serialization::OStream, const View&>(
+      stream, view);
 }
 
 }  // namespace train_results

@@ -15,8 +15,8 @@ namespace train_results {
 /// Lets a recorder work in a thread of its own, so that a run does not wait for its files.
 ///
 /// Records are copied into a queue and recorded in their order, and what else is to be done between two of them is done
-/// there. When the queue is full, the run waits: nothing is lost. The thread wakes for several records at once, or after
-/// 0.1 s, because waking costs more than a record.
+/// there. When the queue is full, the run waits: nothing is lost. The thread wakes for several records at once, or
+/// after 0.1 s, because waking costs more than a record.
 class RecorderThread {
  public:
   using Recorder = std::function<void(const train_dynamics::TrainRecord&)>;

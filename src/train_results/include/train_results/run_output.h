@@ -32,8 +32,7 @@ struct OutputOptions {
   double checkpoint_interval_s = 10.0;  ///< of simulated time; 0: none
   OnWriteError on_write_error = OnWriteError::kStop;
   /// Told at once of what the run goes on in spite of.
-  std::function<void(const std::string&)> complain = [](const std::string&) {
-  };  ///< at once, where the run goes on
+  std::function<void(const std::string&)> complain = [](const std::string&) {};  ///< at once, where the run goes on
 };
 
 /// The folder of a run's results.
@@ -69,8 +68,8 @@ class RunOutput {
   /// Asks for a checkpoint where one is due at the end of the next exchange, or is `wanted` and possible there.
   /// @return whether it does; then KeepCheckpoint comes after the exchange
   bool AskForCheckpoint(train_dynamics::TrainMaster& master, bool wanted = false) const;
-  /// Replaces the folder's checkpoint, as a whole or not at all, while the run goes on: once the records before it are on
-  /// the disk. @throws as Record
+  /// Replaces the folder's checkpoint, as a whole or not at all, while the run goes on: once the records before it are
+  /// on the disk. @throws as Record
   void KeepCheckpoint(const train_dynamics::TrainMaster& master, const train_dynamics::RunSummary& summary);
 
   /// Completes all files that can be. @throws std::exception if one could not be written
@@ -95,7 +94,7 @@ class RunOutput {
   std::exception_ptr error_;   ///< the first, where the run goes on
   std::unique_ptr<BagRecorder> bag_;
   std::unique_ptr<CsvRecorder> csv_;
-  std::future<void> to_disk_;  ///< of the last checkpoint; only the next one and the end wait for a disk
+  std::future<void> to_disk_;               ///< of the last checkpoint; only the next one and the end wait for a disk
   std::unique_ptr<RecorderThread> thread_;  ///< ends before what it uses does
 };
 

@@ -10,8 +10,8 @@ struct NoSummary : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// What a person wants to know of a run first, as lines: where it came to, largest forces, and what happened that should
-/// not (couplings that broke, slides, an early end).
+/// What a person wants to know of a run first, as lines: where it came to, largest forces, and what happened that
+/// should not (couplings that broke, slides, an early end).
 ///
 /// @param summary_json  the contents of a summary.json; what an older one does not have is left out
 /// @throws NoSummary

@@ -27,7 +27,8 @@ struct RunHooks {
   std::function<bool()> ends = [] { return false; };
   /// Whether the next exchange may begin now. If not, it has waited a moment, and is asked again after `ends`.
   std::function<bool()> admits = [] { return true; };
-  /// Called right before each exchange, those between an interruption and its checkpoint included: the place for Command.
+  /// Called right before each exchange, those between an interruption and its checkpoint included: the place for
+  /// Command.
   std::function<void()> begins = [] {};
   /// Called after each exchange, with its wall time [s], unless it is empty.
   std::function<void(double)> exchanged;
@@ -47,9 +48,7 @@ class TrainRun {
            const train_dynamics::TrainCheckpoint* from = nullptr, train_results::RunOutput* output = nullptr);
 
   /// Called for every record, after the summary and the results have got it.
-  void AddObserver(train_dynamics::TrainMaster::Observer observer) {
-    master_.AddObserver(std::move(observer));
-  }
+  void AddObserver(train_dynamics::TrainMaster::Observer observer) { master_.AddObserver(std::move(observer)); }
 
   /// Runs until the end, or until `hooks.ends`; then, where checkpoints are kept, on to the next record and to a
   /// checkpoint there, for `patience` of wall time at most.
@@ -61,8 +60,8 @@ class TrainRun {
   /// Completes the results. @param fault  why the run ended, where it is not one that Go has kept
   /// @return the summary as JSON
   std::string Finish(double wall_s, const std::string& fault = "");
-  /// What the user should know of the run beside its summary, once it has ended: a route that was left, and, of a whole run,
-  /// commands that were never given.
+  /// What the user should know of the run beside its summary, once it has ended: a route that was left, and, of a whole
+  /// run, commands that were never given.
   std::vector<std::string> Warnings() const;
 
   /// See TrainMaster::Command; between two exchanges.

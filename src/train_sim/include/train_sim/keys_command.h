@@ -15,7 +15,8 @@ struct KeysOptions {
 /// Prints the page of what a run leaves: its files, the columns of its tables, the numbers of summary.json.
 void PrintResultFiles();
 
-/// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists by which they are read.
+/// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists by which they are
+/// read.
 ///
 /// Examples are looked for in the folders of TRAIN_BRAKE_CONFIG.
 /// @throws std::invalid_argument where the path names no key

@@ -6,8 +6,8 @@
 
 namespace train_sim {
 
-/// A drawing of a route as the text of an SVG file: height, grade, curvature, speed limit and friction over the position,
-/// as far as the route has them, and its stations.
+/// A drawing of a route as the text of an SVG file: height, grade, curvature, speed limit and friction over the
+/// position, as far as the route has them, and its stations.
 std::string DrawRoute(const train_dynamics::TrackParams& route);
 
 /// Where a route begins and ends: its extent or, where that is infinite, a little more than all its entries.

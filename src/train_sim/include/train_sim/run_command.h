@@ -12,9 +12,9 @@ inline constexpr double kTwinOffset = 1e-9;  ///< [km/h]
 
 struct RunOptions {
   std::string scenario;
-  std::string model;   ///< empty: the scenario's
-  std::string out;     ///< empty: nothing is written
-  std::string resume;  ///< folder of a run that goes on from its checkpoint; instead of a scenario
+  std::string model;                    ///< empty: the scenario's
+  std::string out;                      ///< empty: nothing is written
+  std::string resume;                   ///< folder of a run that goes on from its checkpoint; instead of a scenario
   double checkpoint_interval_s = 10.0;  ///< of simulated time; 0: none
   bool go_on_without_records = false;   ///< where results cannot be written
   std::vector<std::string> overrides;

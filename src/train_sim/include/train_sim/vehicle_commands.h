@@ -12,8 +12,7 @@ enum class ModesFormat {
 };
 
 /// Prints the natural modes of a vehicle's 2D model and its largest stable step.
-int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides,
-               ModesFormat format);
+int PrintModes(const std::string& vehicle_file, const std::vector<std::string>& overrides, ModesFormat format);
 
 /// Prints the coefficient of adhesion over the creepage at several speeds, under the static wheel load.
 /// @param csv  comma-separated instead of aligned

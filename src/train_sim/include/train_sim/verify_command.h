@@ -13,7 +13,8 @@ struct VerifyOptions {
 
 /// Repeats a recorded run in this process and compares it record by record, bit by bit: digests first, then every
 /// recorded value. Prints the verdict.
-/// @return train_run::kSuccess, train_run::kDifferent, train_run::kUnreadable, train_run::kIncomplete or train_run::kInterrupted
+/// @return train_run::kSuccess, train_run::kDifferent, train_run::kUnreadable, train_run::kIncomplete or
+///   train_run::kInterrupted
 int Verify(const VerifyOptions& options);
 
 }  // namespace train_sim

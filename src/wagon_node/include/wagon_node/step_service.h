@@ -23,8 +23,7 @@ namespace wagon_node {
 class StepService {
  public:
   /// Reads a request, and appends the response to the reply. What it throws is told to the caller.
-  using Answer =
-      std::function<void(std::uint8_t* request, std::uint32_t size, std::vector<std::uint8_t>& reply)>;
+  using Answer = std::function<void(std::uint8_t* request, std::uint32_t size, std::vector<std::uint8_t>& reply)>;
 
   /// Advertises the service.
   /// @param name    resolved

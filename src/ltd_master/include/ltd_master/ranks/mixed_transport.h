@@ -9,8 +9,8 @@
 
 namespace ltd_master {
 
-/// A train with external vehicles: one transport has the vehicles of this program, the other one those of others. They are
-/// asked one after the other.
+/// A train with external vehicles: one transport has the vehicles of this program, the other one those of others. They
+/// are asked one after the other.
 class MixedTransport : public train_dynamics::Transport {
  public:
   MixedTransport(std::unique_ptr<train_dynamics::Transport> built_in,
@@ -27,8 +27,7 @@ class MixedTransport : public train_dynamics::Transport {
     external_->Resume(exchange, snapshot, reply);
   }
   bool GivesSnapshots() const override { return built_in_->GivesSnapshots() && external_->GivesSnapshots(); }
-  void Exchange(const train_dynamics::ExchangeRequest& request,
-                train_dynamics::ExchangeReply& reply) override {
+  void Exchange(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) override {
     built_in_->Exchange(request, reply);
     if (reply.fault.vehicle < 0) external_->Exchange(request, reply);
   }

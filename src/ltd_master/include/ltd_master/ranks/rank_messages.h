@@ -36,8 +36,7 @@ class RankMessages {
 
   void Pack(const train_dynamics::ExchangeRequest& request);
   /// One rank's part of a request.
-  void Pack(const train_dynamics::ExchangeRequest& request, int rank,
-            train_brake_msgs::StepRequest& part) const;
+  void Pack(const train_dynamics::ExchangeRequest& request, int rank, train_brake_msgs::StepRequest& part) const;
   void Unpack(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) const;
 
  private:

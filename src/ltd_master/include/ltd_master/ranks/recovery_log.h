@@ -21,8 +21,8 @@ class RecoveryLog {
   std::uint64_t exchange() const { return exchange_; }  ///< of the snapshots
   const Snapshot& snapshot(int rank) const { return snapshots_[rank]; }
   std::uint64_t size() const { return size_; }  ///< exchanges since
-  /// The inputs of exchange() + i, into a request whose arrays have their sizes, the same for all exchanges; no record is asked
-  /// for. Of the request's friction patches those stay that it had.
+  /// The inputs of exchange() + i, into a request whose arrays have their sizes, the same for all exchanges; no record
+  /// is asked for. Of the request's friction patches those stay that it had.
   void Get(std::uint64_t i, train_dynamics::ExchangeRequest& request) const;
 
  private:

@@ -21,10 +21,10 @@ class RankCaller;
 class RankMessages;
 
 struct RosTransportOptions {
-  double start_timeout_s = 60.0;      ///< for all ranks to come up, and to be configured; 0: for ever
-  double exchange_deadline_s = 30.0;  ///< for all replies of an exchange; 0: for ever
-  bool recover = true;                ///< bring lost ranks back; false: the run ends with them
-  double recovery_timeout_s = 60.0;   ///< for each lost rank, one after the other, to come back; 0: for ever
+  double start_timeout_s = 60.0;            ///< for all ranks to come up, and to be configured; 0: for ever
+  double exchange_deadline_s = 30.0;        ///< for all replies of an exchange; 0: for ever
+  bool recover = true;                      ///< bring lost ranks back; false: the run ends with them
+  double recovery_timeout_s = 60.0;         ///< for each lost rank, one after the other, to come back; 0: for ever
   std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
   bool shared_memory = true;                ///< with ranks on the same machine; only asynchronous
   std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
@@ -69,8 +69,7 @@ class RosTransport : public train_dynamics::Transport {
   void Start(train_dynamics::ExchangeReply& reply) override;
   void Resume(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot,
               train_dynamics::ExchangeReply& reply) override;
-  void Exchange(const train_dynamics::ExchangeRequest& request,
-                train_dynamics::ExchangeReply& reply) override;
+  void Exchange(const train_dynamics::ExchangeRequest& request, train_dynamics::ExchangeReply& reply) override;
 
   bool GivesSnapshots() const override;
 

@@ -33,8 +33,8 @@ class ServiceLink {
   /// Connects and shakes hands.
   /// @param timeout_s  for each of the two
   /// @throws LinkError
-  ServiceLink(const std::string& service, const std::string& host, std::uint32_t port,
-              const std::string& md5sum, double timeout_s);
+  ServiceLink(const std::string& service, const std::string& host, std::uint32_t port, const std::string& md5sum,
+              double timeout_s);
   ~ServiceLink();
   ServiceLink(const ServiceLink&) = delete;
   ServiceLink& operator=(const ServiceLink&) = delete;
@@ -58,8 +58,7 @@ class ServiceLink {
   template <class Response>
   bool Receive(Response& response) {
     if (!Flush() || !Fill()) return false;
-    train_brake_msgs::ReadMessage(in_.data() + kPrefix, static_cast<std::uint32_t>(expected_ - kPrefix),
-                                  response);
+    train_brake_msgs::ReadMessage(in_.data() + kPrefix, static_cast<std::uint32_t>(expected_ - kPrefix), response);
     received_ = 0;
     expected_ = kPrefix;
     return true;

@@ -21,8 +21,7 @@ struct Abscissa {
 
 /// Positions where one vehicle's place ends and the next one's begins, from the front: n + 1 for n vehicles,
 /// half-way between their centres.
-std::vector<double> VehicleEdges(const std::vector<double>& centre_m, double first_length_m,
-                                 double last_length_m);
+std::vector<double> VehicleEdges(const std::vector<double>& centre_m, double first_length_m, double last_length_m);
 
 /// A plot over the train.
 class AlongPlot {

@@ -28,7 +28,7 @@ class Elevation {
 ///
 /// @param scale  of lengths along the track, drawn over real
 /// @param room   drawn height that there is
-double FittingExaggeration(const Elevation& elevation, double begin_m, double end_m, double window_m,
-                           double scale, double room);
+double FittingExaggeration(const Elevation& elevation, double begin_m, double end_m, double window_m, double scale,
+                           double room);
 
 }  // namespace train_brake_rviz

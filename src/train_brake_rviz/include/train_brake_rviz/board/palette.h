@@ -14,11 +14,10 @@ constexpr Color Rgb(unsigned hex) {
 /// Colours of things: those of Okabe and Ito, which every kind of colour vision tells apart, and greys. The
 /// report (train_brake_report/style.py) has the same ones.
 namespace palette {
-inline constexpr Color kOrange = Rgb(0xe69f00), kSkyBlue = Rgb(0x56b4e9), kGreen = Rgb(0x009e73),
-                       kBlue = Rgb(0x0072b2), kVermillion = Rgb(0xd55e00), kPurple = Rgb(0xcc79a7);
-inline constexpr Color kInk = Rgb(0x1b1f24), kDark = Rgb(0x59636e), kAxis = Rgb(0x8a949e),
-                       kGrid = Rgb(0xd8dde3), kShade = Rgb(0xeceff2), kPaper = Rgb(0xffffff),
-                       kUnknown = Rgb(0x999999);
+inline constexpr Color kOrange = Rgb(0xe69f00), kSkyBlue = Rgb(0x56b4e9), kGreen = Rgb(0x009e73), kBlue = Rgb(0x0072b2),
+                       kVermillion = Rgb(0xd55e00), kPurple = Rgb(0xcc79a7);
+inline constexpr Color kInk = Rgb(0x1b1f24), kDark = Rgb(0x59636e), kAxis = Rgb(0x8a949e), kGrid = Rgb(0xd8dde3),
+                       kShade = Rgb(0xeceff2), kPaper = Rgb(0xffffff), kUnknown = Rgb(0x999999);
 
 inline constexpr Color kTension = kVermillion, kCompression = kBlue;
 }  // namespace palette

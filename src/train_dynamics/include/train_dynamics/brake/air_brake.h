@@ -23,9 +23,8 @@ struct ServiceApplicationParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Numbers(
-        "reduction_kpa", reduction_kpa, kPositive,
-        "total reductions of the brake pipe's pressure at which the application was measured, ascending");
+    v.Numbers("reduction_kpa", reduction_kpa, kPositive,
+              "total reductions of the brake pipe's pressure at which the application was measured, ascending");
     v.Numbers("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative,
               "p_s, steady cylinder pressure at each of them");
     v.Numbers("wave_speed_mps", wave_speed_mps, kPositive, "speed of the brake wave at each of them");
@@ -34,8 +33,7 @@ struct ServiceApplicationParams {
     v.Check(reduction_kpa.size() >= 4, "reduction_kpa", "must list at least 4 reductions");
     for (std::size_t i = 1; i < reduction_kpa.size(); ++i) {
       v.Check(reduction_kpa[i] > reduction_kpa[i - 1], "reduction_kpa[" + std::to_string(i) + "]",
-              "must be greater than the one before, " + ShortestDecimal(reduction_kpa[i - 1]),
-              {"reduction_kpa"});
+              "must be greater than the one before, " + ShortestDecimal(reduction_kpa[i - 1]), {"reduction_kpa"});
     }
     v.Check(cylinder_pressure_kpa.size() == reduction_kpa.size(), "cylinder_pressure_kpa", kSameLength);
     v.Check(wave_speed_mps.size() == reduction_kpa.size(), "wave_speed_mps", kSameLength);
@@ -58,8 +56,7 @@ struct EmergencyApplicationParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative,
-             "steady cylinder pressure of an emergency");
+    v.Number("cylinder_pressure_kpa", cylinder_pressure_kpa, kNonNegative, "steady cylinder pressure of an emergency");
     v.Number("wave_speed_mps", wave_speed_mps, kPositive, "speed of the emergency's wave along the train");
     v.Number("rise_rate_per_s", rise_rate_per_s, kPositive,
              "b0, rate at which the cylinder pressure nears its steady value beside the source that vents");
@@ -90,8 +87,7 @@ struct ReleaseParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("wave_speed_mps", wave_speed_mps, kPositive, "speed of the release's wave along the train");
-    v.Number("fall_rate_per_s", fall_rate_per_s, kPositive,
-             "beta_r, rate at which the cylinder pressure falls");
+    v.Number("fall_rate_per_s", fall_rate_per_s, kPositive, "beta_r, rate at which the cylinder pressure falls");
   }
 };
 
@@ -111,8 +107,7 @@ struct BrakeSourceParams {
               "vehicle that has the source: 1 the first, -1 the last");
     v.Number("application_delay_s", application_delay_s, kNonNegative,
              "from the driver's command to the venting of the pipe here");
-    v.Flag("releases", releases,
-           "whether it also charges the pipe; false: an end-of-train device, which only vents");
+    v.Flag("releases", releases, "whether it also charges the pipe; false: an end-of-train device, which only vents");
     if (releases)
       v.Number("release_delay_s", release_delay_s, kNonNegative,
                "from the driver's command to the charging of the pipe here");
@@ -130,8 +125,7 @@ struct AirBrakeParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.List("sources", sources,
-           "places where the pipe is vented and charged: locomotives and end-of-train devices");
+    v.List("sources", sources, "places where the pipe is vented and charged: locomotives and end-of-train devices");
     v.Group("service", service, "measured service applications over the pipe's reduction");
     v.Group("emergency", emergency, "emergency application");
     v.Group("release", release, "release");

@@ -17,8 +17,7 @@ struct BrakeKernels {
   /// Pressures at a time.
   void (*cylinder_pressures)(const BrakePhases& phases, double time_s, int count, double* pressure_pa);
   /// Gaps to the targets at a time, and by what factor they close in dt.
-  void (*cylinder_gaps)(const BrakePhases& phases, double time_s, double dt_s, int count,
-                        const GapArrays& arrays);
+  void (*cylinder_gaps)(const BrakePhases& phases, double time_s, double dt_s, int count, const GapArrays& arrays);
   /// Closes the gaps by `steps` times dt; the pressures then.
   void (*close_cylinder_gaps)(int steps, int count, const GapArrays& arrays, double* pressure_pa);
 };

@@ -29,8 +29,7 @@ struct BrakeSystemParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name, "name of the brake system, for people");
-    v.Choice("kind", kind,
-             {{"empirical", BrakeSystemKind::kEmpirical}, {"pneumatic", BrakeSystemKind::kPneumatic}},
+    v.Choice("kind", kind, {{"empirical", BrakeSystemKind::kEmpirical}, {"pneumatic", BrakeSystemKind::kPneumatic}},
              "empirical: pressures by measured rates and wave speeds; pneumatic: flow of air in pipe, valves "
              "and cylinders");
     if (kind == BrakeSystemKind::kEmpirical) empirical.Visit(v);

@@ -45,15 +45,15 @@ struct LocomotiveBrakeCommand {
   std::vector<int> vehicles;  ///< locomotives that obey, from 1, or from -1 for the last; empty: all
 };
 
-/// The independent brakes of a train's locomotives, and the blending of their air brakes with the dynamic brake. What acts
-/// in the cylinder of a locomotive is
+/// The independent brakes of a train's locomotives, and the blending of their air brakes with the dynamic brake. What
+/// acts in the cylinder of a locomotive is
 ///
 ///   p = max(p_i, max(0, p_a - k F))
 ///
-/// p_a [Pa] of the automatic brake; p_i of the independent brake, which goes to what the driver asks for at a constant rate,
-/// up or down; k = blending_kpa_per_kn; F >= 0 effort of the dynamic brake over the exchange before. Blending acts in an
-/// emergency, too [A]. p_i is a function of time and of the commands so far: there is no other state. Its air comes from
-/// the main reservoir, outside of the balance of the pipe's air.
+/// p_a [Pa] of the automatic brake; p_i of the independent brake, which goes to what the driver asks for at a constant
+/// rate, up or down; k = blending_kpa_per_kn; F >= 0 effort of the dynamic brake over the exchange before. Blending
+/// acts in an emergency, too [A]. p_i is a function of time and of the commands so far: there is no other state. Its
+/// air comes from the main reservoir, outside of the balance of the pipe's air.
 ///
 /// Left out: relay valves by speed; an independent brake that cuts the dynamic brake out.
 class LocomotiveBrakes {
@@ -64,8 +64,7 @@ class LocomotiveBrakes {
   };
 
   LocomotiveBrakes() = default;  ///< of no locomotives: nothing acts
-  LocomotiveBrakes(const LocomotiveBrakeParams& params, const std::vector<Locomotive>& locomotives,
-                   int vehicles);
+  LocomotiveBrakes(const LocomotiveBrakeParams& params, const std::vector<Locomotive>& locomotives, int vehicles);
 
   struct BailOff {
     int vehicle;

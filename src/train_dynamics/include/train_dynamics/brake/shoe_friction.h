@@ -19,7 +19,7 @@ enum class ShoeFrictionLaw {
   kEq3,          ///< mu_0 (k + V) / (2 k + V): paper Eq 3
   kComposition,  ///< 0.44 (K + 20) / (4 K + 20) (k + 150) / (2 k + 150) [M] (Russian traction rules)
   kCastIron,     ///< 0.6 (16 K + 100) / (80 K + 100) (k + 100) / (5 k + 100) [M] (Karwatzki; the same rules)
-  kTos,  ///< 0.64 / (V^0.15 + 0.1 / V) - fade, V = max(1, |speed| in mph) [S] (Low & Garg 1977, AAR R-269)
+  kTos,          ///< 0.64 / (V^0.15 + 0.1 / V) - fade, V = max(1, |speed| in mph) [S] (Low & Garg 1977, AAR R-269)
   kTable
 };
 
@@ -31,8 +31,7 @@ struct ShoeFrictionCurveParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("shoe_load_kn", shoe_load_kn, kPositive, "force of one shoe of this curve");
-    v.Numbers("friction_coefficient", friction_coefficient, kNonNegative,
-              "friction at each speed of the table");
+    v.Numbers("friction_coefficient", friction_coefficient, kNonNegative, "friction at each speed of the table");
   }
 };
 
@@ -60,9 +59,9 @@ struct ShoeFrictionTableParams {
   }
 };
 
-/// Shoes with ice on them: their friction has the factor  min(1, f + (1 - f) E / E_w),  E the energy that the shoes of the
-/// vehicle have taken up since the start of the run, over its wheels. [A] Left out: ice that comes again; the difference
-/// between wheels.
+/// Shoes with ice on them: their friction has the factor  min(1, f + (1 - f) E / E_w),  E the energy that the shoes of
+/// the vehicle have taken up since the start of the run, over its wheels. [A] Left out: ice that comes again; the
+/// difference between wheels.
 struct IcyShoesParams {
   double initial_factor = 0.7;
   double energy_per_wheel_j = 2e6;
@@ -103,15 +102,13 @@ struct ShoeFrictionParams {
              "eq3: mu_0 (k + V) / (2 k + V) (paper Eq 3); composition, cast_iron: Russian traction rules "
              "[M]; tos: AAR R-269 [S]; table");
     if (law == ShoeFrictionLaw::kEq3) {
-      v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive,
-               "mu_0, at standstill");
+      v.Number("standstill_friction_coefficient", standstill_friction_coefficient, kPositive, "mu_0, at standstill");
       v.Number("reference_speed_kmh", reference_speed_kmh, kPositive, "V");
     }
     if (law == ShoeFrictionLaw::kTos)
       v.Number("shoe_temperature_c", shoe_temperature_c, Range{-60.0, 600.0},
                "temperature of the shoes; constant: shoes do not warm up");
-    if (law == ShoeFrictionLaw::kTable)
-      v.Group("table", table, "measured friction over speed and shoe force");
+    if (law == ShoeFrictionLaw::kTable) v.Group("table", table, "measured friction over speed and shoe force");
     v.Number("wet_factor", wet_factor, Range{0.0, 1.0, true, false},
              "factor on the friction of every law: 1 dry; wet composition shoes 0.8 [A]");
     v.Group("icy", icy, "shoes with ice on them, which brake less until it is gone; not given: none");
@@ -124,8 +121,7 @@ struct ShoeFrictionParams {
 template <class T>
 T ShoeFriction(const ShoeFrictionParams& p, T speed) {
   const T v_kmh = 3.6 * Abs(speed);
-  return p.standstill_friction_coefficient * (v_kmh + p.reference_speed_kmh) /
-         (2.0 * v_kmh + p.reference_speed_kmh);
+  return p.standstill_friction_coefficient * (v_kmh + p.reference_speed_kmh) / (2.0 * v_kmh + p.reference_speed_kmh);
 }
 
 /// What the law tos loses in a hot shoe [-], T in degrees Fahrenheit:  0 up to 200, 2.5e-6 (T - 200)^2 up to 420,
@@ -199,12 +195,10 @@ struct BrakeCylinderParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("piston_area_m2", piston_area_m2, kPositive, "A, area of all pistons of the vehicle together");
-    v.Number("return_spring_n", return_spring_n, kNonNegative,
-             "F_spring, force that the pressure must overcome first");
+    v.Number("return_spring_n", return_spring_n, kNonNegative, "F_spring, force that the pressure must overcome first");
     v.Number("leverage_ratio", leverage_ratio, kPositive, "i, force of all shoes over that of the piston");
-    v.Number(
-        "efficiency", efficiency, Range{0.0, 1.0, true, false},
-        "eta of the rigging; not given: sqrt(ln(p - 6)) / 3.2, p in psi, that of 10 psi below (TOS) [S]");
+    v.Number("efficiency", efficiency, Range{0.0, 1.0, true, false},
+             "eta of the rigging; not given: sqrt(ln(p - 6)) / 3.2, p in psi, that of 10 psi below (TOS) [S]");
   }
 };
 
@@ -238,15 +232,13 @@ struct LoadSensingParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Choice("kind", kind,
-             {{"proportional", LoadSensingKind::kProportional}, {"two_step", LoadSensingKind::kTwoStep}},
+    v.Choice("kind", kind, {{"proportional", LoadSensingKind::kProportional}, {"two_step", LoadSensingKind::kTwoStep}},
              "proportional: share = mass / full_mass_kg; two_step: empty_share below the change-over mass, "
              "else 1");
     if (kind == LoadSensingKind::kProportional) {
       v.Number("full_mass_kg", full_mass_kg, kPositive,
                "mass of the vehicle for which the full load of the shoes is meant");
-      v.Number("least_share", least_share, kFraction,
-               "share of the full load of the shoes that is always there [A]");
+      v.Number("least_share", least_share, kFraction, "share of the full load of the shoes that is always there [A]");
     } else {
       v.Number("changeover_mass_kg", changeover_mass_kg, kPositive,
                "mass of the vehicle below which empty_share holds");
@@ -292,27 +284,21 @@ struct BrakeRiggingParams {
     if (shoe_load == ShoeLoadForm::kNetBrakingRatio)
       v.Group("net_braking_ratio", net_braking_ratio,
               "load of all shoes over the vehicle's weight at a cylinder pressure");
-    v.Integer("shoes", shoes, Range{1, 48, false, false},
-              "number of shoes of the vehicle, which share the load");
+    v.Integer("shoes", shoes, Range{1, 48, false, false}, "number of shoes of the vehicle, which share the load");
     v.Group("load_sensing", load_sensing, "makes the brake weaker where the vehicle is not full");
-    v.Check(
-        !load_sensing || shoe_load != ShoeLoadForm::kNetBrakingRatio, "load_sensing",
-        "must not be given with shoe_load net_braking_ratio, which is that of the vehicle as it is loaded",
-        {"shoe_load"});
+    v.Check(!load_sensing || shoe_load != ShoeLoadForm::kNetBrakingRatio, "load_sensing",
+            "must not be given with shoe_load net_braking_ratio, which is that of the vehicle as it is loaded",
+            {"shoe_load"});
     v.Flag("cut_out", cut_out, "the vehicle's air brake does not act");
     v.Number("hand_brake_ratio", hand_brake_ratio, Range{0.0, 0.3, false, false},
              "friction force of the hand brake over the weight; 0: released; 0.02 to 0.1 applied");
     v.Group("shoe_friction", shoe_friction, "friction between shoe and tread");
     v.Choice("reaction", reaction,
-             {{"frame", BrakeReaction::kFrame},
-              {"carbody", BrakeReaction::kCarbody},
-              {"none", BrakeReaction::kNone}},
+             {{"frame", BrakeReaction::kFrame}, {"carbody", BrakeReaction::kCarbody}, {"none", BrakeReaction::kNone}},
              "what holds the shoes: frame: each wheelset's bogie frame; carbody; none: the reaction is left "
              "out (as in the paper)");
-    v.Choice(
-        "friction_speed", friction_speed,
-        {{"tread", FrictionSpeed::kTread}, {"vehicle", FrictionSpeed::kVehicle}},
-        "speed in the law of friction: tread: that of each wheelset's tread; vehicle: that of the carbody");
+    v.Choice("friction_speed", friction_speed, {{"tread", FrictionSpeed::kTread}, {"vehicle", FrictionSpeed::kVehicle}},
+             "speed in the law of friction: tread: that of each wheelset's tread; vehicle: that of the carbody");
   }
 };
 
@@ -336,8 +322,7 @@ struct BrakeRigging {
         is_plain(p.shoe_load != ShoeLoadForm::kCylinder && p.shoe_friction.law == ShoeFrictionLaw::kEq3 &&
                  p.shoe_friction.wet_factor == 1.0 && !p.shoe_friction.icy && p.hand_brake_ratio == 0.0) {
     if (p.shoe_load == ShoeLoadForm::kNetBrakingRatio) {
-      load_per_pressure_n_per_pa =
-          p.net_braking_ratio.ratio * weight_n / (1e3 * p.net_braking_ratio.at_pressure_kpa);
+      load_per_pressure_n_per_pa = p.net_braking_ratio.ratio * weight_n / (1e3 * p.net_braking_ratio.at_pressure_kpa);
     }
     load_per_pressure_n_per_pa *= load_share;
   }
@@ -357,8 +342,7 @@ T ShoeLoad(const BrakeRigging& rigging, T cylinder_pressure_pa) {
     return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa;
   }
   const BrakeCylinderParams& cylinder = rigging.params.cylinder;
-  const T efficiency =
-      rigging.efficiency > 0.0 ? T(rigging.efficiency) : TosRiggingEfficiency(cylinder_pressure_pa);
+  const T efficiency = rigging.efficiency > 0.0 ? T(rigging.efficiency) : TosRiggingEfficiency(cylinder_pressure_pa);
   return (rigging.load_share * cylinder.leverage_ratio) * efficiency *
          Max(T(0.0), cylinder.piston_area_m2 * cylinder_pressure_pa - cylinder.return_spring_n);
 }
@@ -375,12 +359,11 @@ template <class T>
 /// ShoeForce of a plain rigging.
 template <class T>
 T PlainShoeForce(const BrakeRigging& rigging, T cylinder_pressure_pa, T speed) {
-  return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa *
-         ShoeFriction(rigging.params.shoe_friction, speed);
+  return rigging.load_per_pressure_n_per_pa * cylinder_pressure_pa * ShoeFriction(rigging.params.shoe_friction, speed);
 }
 
-/// Largest tangential force of all shoes of a vehicle [N]: the load times mu_b(v), and that of the hand brake. It opposes
-/// the wheels' rotation.
+/// Largest tangential force of all shoes of a vehicle [N]: the load times mu_b(v), and that of the hand brake. It
+/// opposes the wheels' rotation.
 template <class T>
 T ShoeForce(const BrakeRigging& rigging, T cylinder_pressure_pa, T speed) {
   return rigging.is_plain ? PlainShoeForce(rigging, cylinder_pressure_pa, speed)

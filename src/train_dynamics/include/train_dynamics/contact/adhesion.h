@@ -23,8 +23,7 @@ struct AdhesionParams {
     v.Number("adhesion_reduction", adhesion_reduction, Range{0.0, 1.0, true, false},
              "kA, factor on the contact's stiffness in its area of adhesion: 1 clean rail, less with a layer "
              "on it");
-    v.Number("slip_reduction", slip_reduction, Range{0.0, 1.0, true, false},
-             "kS, the same factor in the area of slip");
+    v.Number("slip_reduction", slip_reduction, Range{0.0, 1.0, true, false}, "kS, the same factor in the area of slip");
     v.Check(slip_reduction <= adhesion_reduction, "slip_reduction", "must be at most adhesion_reduction");
   }
 };

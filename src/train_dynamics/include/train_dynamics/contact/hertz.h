@@ -14,14 +14,12 @@ struct HertzParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("youngs_modulus_pa", youngs_modulus_pa, kPositive, "Young's modulus of wheel and rail");
-    v.Number("poisson_ratio", poisson_ratio, Range{0.0, 0.5, false, false},
-             "Poisson's ratio of wheel and rail");
+    v.Number("poisson_ratio", poisson_ratio, Range{0.0, 0.5, false, false}, "Poisson's ratio of wheel and rail");
     v.Number("wheel_lateral_radius_m", wheel_lateral_radius_m, kFinite,
              "lateral radius of the wheel profile at the contact; negative: concave");
     v.Number("rail_lateral_radius_m", rail_lateral_radius_m, kPositive,
              "lateral radius of the rail head at the contact; positive: convex");
-    v.Check(wheel_lateral_radius_m != 0.0, "wheel_lateral_radius_m", "must not be 0",
-            {"wheel_lateral_radius_m"});
+    v.Check(wheel_lateral_radius_m != 0.0, "wheel_lateral_radius_m", "must not be 0", {"wheel_lateral_radius_m"});
     v.Check(wheel_lateral_radius_m == 0.0 || 1.0 / wheel_lateral_radius_m + 1.0 / rail_lateral_radius_m > 0.0,
             "wheel_lateral_radius_m",
             "must make a point contact: a concave wheel needs a radius larger than rail_lateral_radius_m",

@@ -48,16 +48,15 @@ CreepLaw<T, P> FreezeCreepLaw(const CreepShape<P>& shape, double creep_stiffness
                               const T& friction, const T& speed, double regularisation) {
   const T per_wheel = Max(T(1.0), 0.5 * normal_force);  // below 1 N the limit, not the steepness, decides
   const T reference_speed = Sqrt(speed * speed + regularisation * regularisation);
-  return {shape, normal_force * friction,
-          creep_stiffness * InverseCbrt(per_wheel) / (friction * reference_speed)};
+  return {shape, normal_force * friction, creep_stiffness * InverseCbrt(per_wheel) / (friction * reference_speed)};
 }
 
 /// The same on one surface, whose own mu0 `friction` replaces.
 template <class T>
-CreepLaw<T> FreezeCreepLaw(const AdhesionParams& adhesion, double creep_stiffness, T normal_force, T friction,
-                           T speed, double regularisation) {
-  const CreepShape<double> shape{adhesion.friction_ratio, adhesion.friction_decay_s_per_m,
-                                 adhesion.adhesion_reduction, adhesion.slip_reduction};
+CreepLaw<T> FreezeCreepLaw(const AdhesionParams& adhesion, double creep_stiffness, T normal_force, T friction, T speed,
+                           double regularisation) {
+  const CreepShape<double> shape{adhesion.friction_ratio, adhesion.friction_decay_s_per_m, adhesion.adhesion_reduction,
+                                 adhesion.slip_reduction};
   return FreezeCreepLaw<T, double>(shape, creep_stiffness, normal_force, friction, speed, regularisation);
 }
 

@@ -17,10 +17,9 @@ namespace train_dynamics {
 /// The closed set of laws of the force between two vehicles; see connection_law.h. Chosen once per set of equal
 /// connections, never per connection.
 template <template <class...> class Of>
-using OfConnectionLaws =
-    Of<DrawBar, SmoothGears, StickSpringGears, DampedStickGears, LuGreGears, TableGear,
-       UnequalGears<FrictionDevice, FrictionDevice>, UnequalGears<FrictionDevice, TableDevice>,
-       UnequalGears<TableDevice, TableDevice>, SideBuffers>;
+using OfConnectionLaws = Of<DrawBar, SmoothGears, StickSpringGears, DampedStickGears, LuGreGears, TableGear,
+                            UnequalGears<FrictionDevice, FrictionDevice>, UnequalGears<FrictionDevice, TableDevice>,
+                            UnequalGears<TableDevice, TableDevice>, SideBuffers>;
 
 using ConnectionLaw = OfConnectionLaws<std::variant>;
 
@@ -53,8 +52,7 @@ struct ConnectionParams {
              "pipe is open there; 0: it never breaks");
     if (kind == ConnectionKind::kDraftGears)
       v.Group("draft_gear", draft_gear, "one of two equal friction draft gears in series");
-    if (kind == ConnectionKind::kDrawBar)
-      v.Group("draw_bar", draw_bar, "rigid bar: a linear spring and damper");
+    if (kind == ConnectionKind::kDrawBar) v.Group("draw_bar", draw_bar, "rigid bar: a linear spring and damper");
     if (kind == ConnectionKind::kTable) v.Group("table", table, "measured force of the whole connection");
     if (kind == ConnectionKind::kUnequalGears)
       v.Group("unequal_gears", unequal_gears, "two different draft gears in series");

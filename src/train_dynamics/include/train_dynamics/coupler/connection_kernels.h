@@ -17,8 +17,8 @@ struct ConnectionArrays {
   double *force_n, *elastic_n;                 ///< tension positive
   double *tension_n, *tension_time_s;          ///< the largest so far, and when
   double *compression_n, *compression_time_s;  ///< the same, <= 0
-  double *stored_j, *dissipated_j;  ///< at the last exchange, of a law that stores by memory; so far
-  double* parted_s;                 ///< when it broke; < 0: it has not
+  double *stored_j, *dissipated_j;             ///< at the last exchange, of a law that stores by memory; so far
+  double* parted_s;                            ///< when it broke; < 0: it has not
 };
 
 /// A law of connections over the lanes of one instruction set.

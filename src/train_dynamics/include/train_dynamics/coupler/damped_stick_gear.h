@@ -59,8 +59,8 @@ struct FrictionDevice {
 /// Two equal friction draft gears in series: the default for real trains.
 struct DampedStickGears : HystereticConnection<FrictionDevice> {
   explicit DampedStickGears(const DraftGearParams& gear)
-      : HystereticConnection<FrictionDevice>{gear.slack_m,         0.5, 0.0, FrictionDevice(gear),
-                                             FrictionDevice(gear), true} {}
+      : HystereticConnection<FrictionDevice>{gear.slack_m, 0.5, 0.0, FrictionDevice(gear), FrictionDevice(gear), true} {
+  }
 };
 
 }  // namespace train_dynamics

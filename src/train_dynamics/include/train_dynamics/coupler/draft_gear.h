@@ -57,8 +57,7 @@ struct DraftGearParams {
              "stiffness of the stop of one gear beyond d_max");
     v.Number("wedge_angle_deg", wedge_angle_deg, Range{0.0, 90.0}, "phi, angle of the wedge");
     v.Number("static_friction_coefficient", static_friction_coefficient, kNonNegative, "mu_s, on the wedge");
-    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, kNonNegative,
-             "mu_k, on the wedge");
+    v.Number("kinetic_friction_coefficient", kinetic_friction_coefficient, kNonNegative, "mu_k, on the wedge");
     v.Number("stribeck_speed_mps", stribeck_speed_mps, kPositive,
              "v_s, rate of one gear's travel over which friction falls from mu_s to mu_k; not of friction "
              "damped_stick");
@@ -77,13 +76,11 @@ struct DraftGearParams {
     v.Check(static_friction_coefficient < TanWedge(), "static_friction_coefficient",
             "must be below the tangent of wedge_angle_deg: the gear would lock itself");
     v.Check(!damped_stick || kinetic_friction_coefficient == static_friction_coefficient,
-            "kinetic_friction_coefficient",
-            "must equal static_friction_coefficient for friction damped_stick");
+            "kinetic_friction_coefficient", "must equal static_friction_coefficient for friction damped_stick");
     v.Check(!damped_stick || gear_stick_stiffness_n_per_m > SteepestLoading(), "gear_stick_stiffness_n_per_m",
-            "must exceed the steepest slope of the loading branch, " + ShortestDecimal(SteepestLoading()) +
-                " N/m",
-            {"friction", "preload_n", "preload_travel_m", "spring_stiffness_n_per_m",
-             "spring_hardening_n_per_m3", "travel_m", "wedge_angle_deg", "static_friction_coefficient"});
+            "must exceed the steepest slope of the loading branch, " + ShortestDecimal(SteepestLoading()) + " N/m",
+            {"friction", "preload_n", "preload_travel_m", "spring_stiffness_n_per_m", "spring_hardening_n_per_m3",
+             "travel_m", "wedge_angle_deg", "static_friction_coefficient"});
   }
 
   /// tan(phi) [-].
@@ -119,8 +116,7 @@ T GearFrictionCoefficient(const DraftGearParams& p, T speed) {
 ///   F_s = F_0 min(d / d_0, 1) + k_s d + k_3 d^3
 template <class T>
 T GearSpringForce(const DraftGearParams& p, T travel) {
-  const T linear =
-      p.preload_n * Min(T(1.0), travel * (1.0 / p.preload_travel_m)) + p.spring_stiffness_n_per_m * travel;
+  const T linear = p.preload_n * Min(T(1.0), travel * (1.0 / p.preload_travel_m)) + p.spring_stiffness_n_per_m * travel;
   if (p.spring_hardening_n_per_m3 == 0.0) return linear;
   return linear + p.spring_hardening_n_per_m3 * travel * travel * travel;
 }

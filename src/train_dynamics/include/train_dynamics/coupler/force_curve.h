@@ -23,10 +23,9 @@ struct ForceCurveParams {
     v.Numbers("force_n", force_n, kNonNegative, "force at each of them: 0 first, not descending");
     v.Check(travel_m.size() >= 2 && travel_m.size() <= kMostPoints, "travel_m", "must list 2 to 32 points");
     v.Check(travel_m.empty() || travel_m.front() == 0.0, "travel_m", "must start at 0, the end of the slack");
-    v.Check(std::adjacent_find(travel_m.begin(), travel_m.end(), std::greater_equal<>()) == travel_m.end(),
-            "travel_m", "must ascend");
-    v.Check(force_n.size() == travel_m.size(), "force_n", "must have as many values as travel_m",
-            {"travel_m"});
+    v.Check(std::adjacent_find(travel_m.begin(), travel_m.end(), std::greater_equal<>()) == travel_m.end(), "travel_m",
+            "must ascend");
+    v.Check(force_n.size() == travel_m.size(), "force_n", "must have as many values as travel_m", {"travel_m"});
     v.Check(force_n.empty() || force_n.front() == 0.0, "force_n",
             "must start at 0: at the end of the slack there is no force");
     v.Check(std::is_sorted(force_n.begin(), force_n.end()), "force_n", "must not descend");
@@ -45,9 +44,9 @@ struct HysteresisParams {
   void Visit(Visitor& v) {
     v.Group("loading", loading, "force over travel while it is loaded");
     v.Group("unloading", unloading, "force over travel while it is unloaded, nowhere above loading");
-    v.Check(loading.travel_m.empty() || unloading.travel_m.empty() ||
-                loading.travel_m.back() == unloading.travel_m.back(),
-            "unloading.travel_m", "must end where loading.travel_m ends", {"loading", "unloading"});
+    v.Check(
+        loading.travel_m.empty() || unloading.travel_m.empty() || loading.travel_m.back() == unloading.travel_m.back(),
+        "unloading.travel_m", "must end where loading.travel_m ends", {"loading", "unloading"});
     v.Check(!UnloadsAboveLoading(), "unloading.force_n",
             "must nowhere be above loading.force_n: where the curves cross the device would give energy",
             {"loading", "unloading"});
@@ -80,8 +79,8 @@ struct ForceCurve {
     }
     return energy;
   }
-  /// See EndOfStick in coupler/hysteresis.h. Along the curve h = F - k x falls from 0; the end is where it has fallen to
-  /// force - k travel.
+  /// See EndOfStick in coupler/hysteresis.h. Along the curve h = F - k x falls from 0; the end is where it has fallen
+  /// to force - k travel.
   template <class T>
   T EndOfStick(T travel, T force, double stiffness_n_per_m) const {
     const T goal = force - stiffness_n_per_m * travel;
@@ -104,8 +103,7 @@ struct ForceCurve {
 /// A device given by tables, as coupler/hysteresis.h wants it. Beyond the last points the branches stay level and the
 /// solid stop is added.
 struct TableDevice {
-  TableDevice(const HysteresisParams& tables, double stiffness_n_per_m, double damping_ns_per_m,
-              double solid_n_per_m)
+  TableDevice(const HysteresisParams& tables, double stiffness_n_per_m, double damping_ns_per_m, double solid_n_per_m)
       : loading(tables.loading),
         unloading(tables.unloading),
         solid_stiffness_n_per_m(solid_n_per_m),

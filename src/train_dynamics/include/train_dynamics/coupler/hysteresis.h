@@ -20,8 +20,8 @@
 ///   E <- clamp(E + k dq, lower(q), upper(q))             the memory; k dq along the stick line
 ///   F  = clamp(E + c q', lower(q), upper(q)) + stop
 ///
-/// the bounds being the branches with the sign of q. E depends on the path of q alone: a slow cycle takes the same share
-/// of energy at any speed. While E lies inside its bounds the damper takes what would ring.
+/// the bounds being the branches with the sign of q. E depends on the path of q alone: a slow cycle takes the same
+/// share of energy at any speed. While E lies inside its bounds the damper takes what would ring.
 ///
 /// What can be got back from (x, E), down the stick line and then along Unloading, is the energy stored:
 ///
@@ -37,8 +37,7 @@ T RecoverableEnergy(const Device& device, T travel, T force) {
   const T end = device.EndOfStick(travel, force);
   const T end_force = device.Unloading(end);
   return device.UnloadingEnergy(end) +
-         (force * force - end_force * end_force) * (0.5 / device.stick_stiffness_n_per_m) +
-         device.StopEnergy(travel);
+         (force * force - end_force * end_force) * (0.5 / device.stick_stiffness_n_per_m) + device.StopEnergy(travel);
 }
 
 /// A connection of one kind of device, the same in tension and compression or different.
@@ -53,8 +52,7 @@ struct HystereticConnection {
   using Memory = StickState<T>;
 
   double slack_m;
-  double
-      share;  ///< of one device in the extension: 1/2 for two equal gears in series, 1 for a whole connection
+  double share;  ///< of one device in the extension: 1/2 for two equal gears in series, 1 for a whole connection
   double damping_ns_per_m = 0.0;  ///< b, of the connection, beyond its slack
   Device tension, compression;
   bool symmetric;  ///< compression is not used
@@ -67,9 +65,7 @@ struct HystereticConnection {
   [[gnu::always_inline]] double Stiffness() const { return share * tension.stick_stiffness_n_per_m; }
   [[gnu::always_inline]] double Damping() const { return share * tension.stick_damping_ns_per_m; }
   /// While it sticks.
-  ConnectionTangent TangentAt(double /*force_n*/) const {
-    return {Stiffness(), Damping() + damping_ns_per_m, false};
-  }
+  ConnectionTangent TangentAt(double /*force_n*/) const { return {Stiffness(), Damping() + damping_ns_per_m, false}; }
 };
 
 /// Forces between which a connection sticks.
@@ -84,8 +80,7 @@ template <class T, class Device>
 StickBounds<T> BoundsAt(const HystereticConnection<Device>& c, T q) {
   const T travel = c.share * Max(T(0.0), Abs(q) - 0.5 * c.slack_m);
   const MaskOf<T> pushed = q < T(0.0);
-  T loading = c.tension.Loading(travel), unloading = c.tension.Unloading(travel),
-    stop = c.tension.Stop(travel);
+  T loading = c.tension.Loading(travel), unloading = c.tension.Unloading(travel), stop = c.tension.Stop(travel);
   if (!c.symmetric) {
     loading = Select(pushed, c.compression.Loading(travel), loading);
     unloading = Select(pushed, c.compression.Unloading(travel), unloading);

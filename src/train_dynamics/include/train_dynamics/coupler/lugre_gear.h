@@ -17,14 +17,14 @@ struct LuGreState {
   }
 };
 
-/// Two draft gears whose coefficient of friction follows the sliding over a length: a study of the paper's conclusion 4,
-/// no draft gear for real trains.
+/// Two draft gears whose coefficient of friction follows the sliding over a length: a study of the paper's conclusion
+/// 4, no draft gear for real trains.
 ///
 ///   m <- s mu(w) + (m - s mu(w)) exp(-|dd| / ell),   F = sign(q) [ F_s t / (t - m) + F_stop ]
 ///
-/// dd step of a gear's travel, s its sign, mu(w) of GearFrictionCoefficient. The friction has no elastic range: vibration
-/// lets a loaded gear creep, and with the paper's fall from 0.33 to 0.05 a train is chaotic. F - F_spring is booked as
-/// dissipation, which while it slides back over ell is less than zero.
+/// dd step of a gear's travel, s its sign, mu(w) of GearFrictionCoefficient. The friction has no elastic range:
+/// vibration lets a loaded gear creep, and with the paper's fall from 0.33 to 0.05 a train is chaotic. F - F_spring is
+/// booked as dissipation, which while it slides back over ell is less than zero.
 struct LuGreGears : DraftGear {
   static constexpr ConnectionAccount kAccount = ConnectionAccount::kDraftGears;
   static constexpr bool kStoresByMemory = false;
@@ -55,8 +55,7 @@ GearForce<T> ConnectionForce(const LuGreGears& gears, T q, T q_rate, LuGreState<
   memory.q = q;
   const T spring = GearSpringForce(p, travel);
   const T stop = GearStopForce(p, travel);
-  return {CopySign(spring * gears.tan_wedge / (gears.tan_wedge - memory.m) + stop, q),
-          CopySign(spring + stop, q)};
+  return {CopySign(spring * gears.tan_wedge / (gears.tan_wedge - memory.m) + stop, q), CopySign(spring + stop, q)};
 }
 
 template <class T>

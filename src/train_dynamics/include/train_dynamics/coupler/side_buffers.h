@@ -16,13 +16,11 @@ struct BufferSpringParams {
     v.Number("locked_stiffness_n_per_m", locked_stiffness_n_per_m, kPositive,
              "k of the line between the curves, while it sticks");
     v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative, "c while it sticks");
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive,
-             "stiffness beyond the last point");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive, "stiffness beyond the last point");
     tables.Visit(v);
-    v.Check(
-        locked_stiffness_n_per_m > tables.SteepestSlope(), "locked_stiffness_n_per_m",
-        "must exceed the steepest slope of the tables, " + ShortestDecimal(tables.SteepestSlope()) + " N/m",
-        {"loading", "unloading"});
+    v.Check(locked_stiffness_n_per_m > tables.SteepestSlope(), "locked_stiffness_n_per_m",
+            "must exceed the steepest slope of the tables, " + ShortestDecimal(tables.SteepestSlope()) + " N/m",
+            {"loading", "unloading"});
   }
   TableDevice Device() const {
     return {tables, locked_stiffness_n_per_m, locked_damping_ns_per_m, solid_stiffness_n_per_m};
@@ -41,8 +39,7 @@ struct SideBuffersParams {
              "d_0, travel of each buffer when nothing pulls, by the tightened screw");
     v.Group("buffer", buffer, "one of the four buffers");
     v.Group("draw_gear", draw_gear, "both draw gears and the screw together");
-    v.Check(buffer.tables.loading.travel_m.empty() ||
-                pretension_travel_m <= buffer.tables.loading.travel_m.back(),
+    v.Check(buffer.tables.loading.travel_m.empty() || pretension_travel_m <= buffer.tables.loading.travel_m.back(),
             "pretension_travel_m", "must lie within the travel of the buffers", {"buffer"});
     v.Check(PretensionIsReached(), "draw_gear", "must reach the force of two buffers at pretension_travel_m",
             {"buffer", "draw_gear", "pretension_travel_m"});
@@ -72,8 +69,8 @@ struct SideBuffersState {
 ///   x_b = max(d_0 - q/2, 0) of each buffer,   x_d = max(s_0 + q, 0) of the draw gear
 ///   F = F_d(x_d) - 2 F_b(x_b),  tension positive
 ///
-/// s_0 such that the means of loading and unloading balance at q = 0, where a train starts. Vehicles that push each other
-/// harder slacken the screw; pulled by more than 2 d_0 the buffers part.
+/// s_0 such that the means of loading and unloading balance at q = 0, where a train starts. Vehicles that push each
+/// other harder slacken the screw; pulled by more than 2 d_0 the buffers part.
 struct SideBuffers {
   static constexpr ConnectionAccount kAccount = ConnectionAccount::kDraftGears;
   static constexpr bool kStoresByMemory = true;
@@ -122,8 +119,7 @@ template <class T>
 GearForce<T> ConnectionForce(const SideBuffers& c, T q, T q_rate, SideBuffersState<T>& memory) {
   memory = Moved(c, q, memory);
   const auto damped = [](const TableDevice& device, T travel, T force, T rate) {
-    return Clamp(force + device.stick_damping_ns_per_m * rate, device.Unloading(travel),
-                 device.Loading(travel)) +
+    return Clamp(force + device.stick_damping_ns_per_m * rate, device.Unloading(travel), device.Loading(travel)) +
            device.Stop(travel);
   };
   const T push = damped(c.buffer, c.BufferTravel(q), memory.buffer_force, T(-0.5) * q_rate);

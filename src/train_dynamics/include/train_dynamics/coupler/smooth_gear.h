@@ -20,8 +20,7 @@ template <class T>
 GearForce<T> SmoothGearForce(const DraftGear& gear, T q, T q_rate) {
   const DraftGearParams& p = gear.params;
   const T travel = GearTravel(p, q);
-  if (AllOf(travel == T(0.0)))
-    return {CopySign(T(0.0), q), CopySign(T(0.0), q)};  // in the slack, for all lanes
+  if (AllOf(travel == T(0.0))) return {CopySign(T(0.0), q), CopySign(T(0.0), q)};  // in the slack, for all lanes
   const T rate = CopySign(T(0.5), q) * q_rate;
   const T spring = GearSpringForce(p, travel);
   const T mu = GearFrictionCoefficient(p, rate) * Tanh(rate * (1.0 / p.smoothing_speed_mps));

@@ -45,9 +45,7 @@ struct StickSpringGears : DraftGear {
   }
   double Slack() const { return params.slack_m; }
   /// While it sticks.
-  ConnectionTangent TangentAt(double /*force_n*/) const {
-    return {params.stick_stiffness_n_per_m, 0.0, false};
-  }
+  ConnectionTangent TangentAt(double /*force_n*/) const { return {params.stick_stiffness_n_per_m, 0.0, false}; }
 
   FrictionDevice device;  ///< a gear with mu_k
 };

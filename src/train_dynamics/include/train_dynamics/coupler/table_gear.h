@@ -24,8 +24,7 @@ struct TableGearParams {
              "k of the line between the curves, while it sticks");
     v.Number("locked_damping_ns_per_m", locked_damping_ns_per_m, kNonNegative, "c while it sticks");
     v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative, "b, of a damper beyond the slack");
-    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive,
-             "stiffness beyond the last point");
+    v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive, "stiffness beyond the last point");
     tables.Visit(v);
     v.Group("compression", compression, "curves of compression; not given: those of tension");
     const double steepest =
@@ -39,12 +38,9 @@ struct TableGearParams {
 /// A whole connection given by tables: coupler/hysteresis.h with x = max(|q| - slack/2, 0).
 struct TableGear : HystereticConnection<TableDevice> {
   explicit TableGear(const TableGearParams& p)
-      : HystereticConnection<TableDevice>{p.slack_m,
-                                          1.0,
-                                          p.damping_ns_per_m,
-                                          Device(p, p.tables),
-                                          Device(p, p.compression.value_or(p.tables)),
-                                          !p.compression} {}
+      : HystereticConnection<TableDevice>{
+            p.slack_m,     1.0, p.damping_ns_per_m, Device(p, p.tables), Device(p, p.compression.value_or(p.tables)),
+            !p.compression} {}
 
  private:
   static TableDevice Device(const TableGearParams& p, const HysteresisParams& tables) {

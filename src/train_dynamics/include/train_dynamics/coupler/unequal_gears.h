@@ -30,8 +30,7 @@ struct OneGearParams {
       v.Group("table", table, "the measured gear, without slack");
       v.Check(table.slack_m == 0.0, "table.slack_m", no_slack);
       v.Check(table.damping_ns_per_m == 0.0, "table.damping_ns_per_m", "must be 0 for one gear of two");
-      v.Check(!table.compression, "table.compression",
-              "must not be given for one gear, which is only pushed in");
+      v.Check(!table.compression, "table.compression", "must not be given for one gear, which is only pushed in");
     }
   }
 };
@@ -125,13 +124,11 @@ UnequalState<T> Moved(const UnequalGears<DeviceA, DeviceB>& gears, T q, const Un
     low = Select(too_far, low, middle);
   }
   const T travel_a = 0.5 * (low + high);
-  return {q, travel_a, Stick(gears.a, travel_a, last_a, force_a),
-          Stick(gears.b, total - travel_a, last_b, force_b)};
+  return {q, travel_a, Stick(gears.a, travel_a, last_a, force_a), Stick(gears.b, total - travel_a, last_b, force_b)};
 }
 
 template <class T, class DeviceA, class DeviceB>
-GearForce<T> ConnectionForce(const UnequalGears<DeviceA, DeviceB>& gears, T q, T q_rate,
-                             UnequalState<T>& memory) {
+GearForce<T> ConnectionForce(const UnequalGears<DeviceA, DeviceB>& gears, T q, T q_rate, UnequalState<T>& memory) {
   memory = Moved(gears, q, memory);
   const T travel_b = Max(T(0.0), Abs(q) - 0.5 * gears.slack_m) - memory.travel_a;
   const T stop_a = gears.a.Stop(memory.travel_a), stop_b = gears.b.Stop(travel_b);
@@ -146,8 +143,7 @@ template <class T, class DeviceA, class DeviceB>
 T StoredEnergy(const UnequalGears<DeviceA, DeviceB>& gears, T q, const UnequalState<T>& memory) {
   const UnequalState<T> now = Moved(gears, q, memory);
   const T travel_b = Max(T(0.0), Abs(q) - 0.5 * gears.slack_m) - now.travel_a;
-  return RecoverableEnergy(gears.a, now.travel_a, now.force_a) +
-         RecoverableEnergy(gears.b, travel_b, now.force_b);
+  return RecoverableEnergy(gears.a, now.travel_a, now.force_a) + RecoverableEnergy(gears.b, travel_b, now.force_b);
 }
 
 /// The law of two gears; which of them is in front does not matter to the force.
@@ -156,18 +152,16 @@ template <class Law>
 Law UnequalGearsOf(const UnequalGearsParams& p) {
   const auto friction = [](const OneGearParams& gear) { return FrictionDevice(gear.draft_gear); };
   const auto table = [](const OneGearParams& gear) {
-    return TableDevice(gear.table.tables, gear.table.locked_stiffness_n_per_m,
-                       gear.table.locked_damping_ns_per_m, gear.table.solid_stiffness_n_per_m);
+    return TableDevice(gear.table.tables, gear.table.locked_stiffness_n_per_m, gear.table.locked_damping_ns_per_m,
+                       gear.table.solid_stiffness_n_per_m);
   };
   const bool front_rubs = p.front_gear.kind == OneGearParams::Kind::kFriction;
   const bool rear_rubs = p.rear_gear.kind == OneGearParams::Kind::kFriction;
   if (front_rubs && rear_rubs) {
-    return UnequalGears<FrictionDevice, FrictionDevice>{p.slack_m, friction(p.front_gear),
-                                                        friction(p.rear_gear)};
+    return UnequalGears<FrictionDevice, FrictionDevice>{p.slack_m, friction(p.front_gear), friction(p.rear_gear)};
   }
   if (front_rubs || rear_rubs) {
-    return UnequalGears<FrictionDevice, TableDevice>{p.slack_m,
-                                                     friction(front_rubs ? p.front_gear : p.rear_gear),
+    return UnequalGears<FrictionDevice, TableDevice>{p.slack_m, friction(front_rubs ? p.front_gear : p.rear_gear),
                                                      table(front_rubs ? p.rear_gear : p.front_gear)};
   }
   return UnequalGears<TableDevice, TableDevice>{p.slack_m, table(p.front_gear), table(p.rear_gear)};

@@ -44,8 +44,7 @@ namespace detail {
 /// register.
 template <class Element, int N, int kWidth>
 struct Registers {
-  static_assert(kWidth >= 2 && N % kWidth == 0,
-                "the number of lanes must be a multiple of the register width");
+  static_assert(kWidth >= 2 && N % kWidth == 0, "the number of lanes must be a multiple of the register width");
   static constexpr int kCount = N / kWidth;
   using Register [[gnu::vector_size(8 * kWidth)]] = Element;
 
@@ -83,9 +82,7 @@ struct LaneMask : detail::Registers<std::int64_t, N, kWidth> {
   friend LaneMask operator|(const LaneMask& a, const LaneMask& b) {
     return detail::ForEachRegister<LaneMask>(std::bit_or<>(), a, b);
   }
-  friend LaneMask operator!(const LaneMask& a) {
-    return detail::ForEachRegister<LaneMask>(std::bit_not<>(), a);
-  }
+  friend LaneMask operator!(const LaneMask& a) { return detail::ForEachRegister<LaneMask>(std::bit_not<>(), a); }
   friend Lanes<N, kWidth> Select(const LaneMask& mask, const Lanes<N, kWidth>& a, const Lanes<N, kWidth>& b) {
     const auto choose = [](auto m, auto x, auto y) { return m ? x : y; };
     return detail::ForEachRegister<Lanes<N, kWidth>>(choose, mask, a, b);

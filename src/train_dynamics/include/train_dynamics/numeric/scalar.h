@@ -28,8 +28,7 @@
 /// (except for its sign and payload, which no rule of the language fixes).
 namespace train_dynamics {
 
-static_assert(FLT_EVAL_METHOD == 0,
-              "double must be computed as double: x87 would give other bits than lanes do");
+static_assert(FLT_EVAL_METHOD == 0, "double must be computed as double: x87 would give other bits than lanes do");
 
 /// The types that belong to T.
 template <class T>

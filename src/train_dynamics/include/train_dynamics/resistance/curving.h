@@ -10,14 +10,14 @@
 namespace train_dynamics {
 
 enum class CurvingResistanceLaw {
-  kCole,  ///< 6116 / R [M] (Cole, Handbook of Railway Vehicle Dynamics, ch. 9, 2006); 0.714 lb/short ton/degree
-  kArea,  ///< 6850.5 / R [S]; 0.8 lb/short ton/degree, one degree (chord of 100 ft) being R = 1746.40 m
+  kCole,    ///< 6116 / R [M] (Cole, Handbook of Railway Vehicle Dynamics, ch. 9, 2006); 0.714 lb/short ton/degree
+  kArea,    ///< 6850.5 / R [S]; 0.8 lb/short ton/degree, one degree (chord of 100 ft) being R = 1746.40 m
   kRoeckl,  ///< g 650 / (R - 55) from R = 300 m on, g 500 / (R - 30) below [M]; not continuous at 300 m, as published
   kTable
 };
 
-/// Resistance over the radius of curves, linear between points; above the last radius it falls as 1/R, below the first it
-/// stays.
+/// Resistance over the radius of curves, linear between points; above the last radius it falls as 1/R, below the first
+/// it stays.
 struct CurvingTableParams {
   std::vector<double> radius_m;
   std::vector<double> resistance_n_per_t;
@@ -26,12 +26,11 @@ struct CurvingTableParams {
   void Visit(Visitor& v) {
     v.Numbers("radius_m", radius_m, kPositive,
               "radii of the table, ascending; beyond the last one the resistance falls as 1/R");
-    v.Numbers("resistance_n_per_t", resistance_n_per_t, kNonNegative,
-              "resistance at each of them, not ascending");
+    v.Numbers("resistance_n_per_t", resistance_n_per_t, kNonNegative, "resistance at each of them, not ascending");
     v.Check(!radius_m.empty(), "radius_m", "must list the radii of the table");
     v.Check(IsAscending(radius_m), "radius_m", "must ascend");
-    v.Check(resistance_n_per_t.size() == radius_m.size(), "resistance_n_per_t",
-            "must have as many values as radius_m", {"radius_m"});
+    v.Check(resistance_n_per_t.size() == radius_m.size(), "resistance_n_per_t", "must have as many values as radius_m",
+            {"radius_m"});
     v.Check(std::is_sorted(resistance_n_per_t.rbegin(), resistance_n_per_t.rend()), "resistance_n_per_t",
             "must not ascend");
   }

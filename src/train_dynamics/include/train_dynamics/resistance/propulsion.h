@@ -51,7 +51,8 @@ struct ModifiedDavisParams {
   }
 };
 
-/// r = f0 + f2 ((k + w) / 100)^2  in newtons per kilonewton. [S] (Wende, Fahrdynamik des Schienenverkehrs, 2003, p. 153)
+/// r = f0 + f2 ((k + w) / 100)^2  in newtons per kilonewton. [S] (Wende, Fahrdynamik des Schienenverkehrs, 2003, p.
+/// 153)
 struct StrahlParams {
   double constant_n_per_kn = kRequired;
   double quadratic_n_per_kn = kRequired;
@@ -60,8 +61,7 @@ struct StrahlParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative, "f0: 1.4 of ore wagons, 2.2 of a V 90");
-    v.Number("quadratic_n_per_kn", quadratic_n_per_kn, kNonNegative,
-             "f2 at 100 km/h: 3.9 of ore wagons, 10 of a V 90");
+    v.Number("quadratic_n_per_kn", quadratic_n_per_kn, kNonNegative, "f2 at 100 km/h: 3.9 of ore wagons, 10 of a V 90");
     v.Number("head_wind_kmh", head_wind_kmh, kNonNegative, "w, added to the speed: 15 for locomotives");
   }
 };
@@ -76,8 +76,8 @@ enum class BreakawayLaw {
 ///
 ///   roller_bearings 28 / (q0 + 7),  plain_bearings 142 / (q0 + 7)   (Russian traction rules [M]),  constant: as given.
 ///
-/// It holds from standstill until the vehicle has moved `distance_m` [A], in place of a + b k where that is less. Left out:
-/// how long the vehicle has stood, and temperature.
+/// It holds from standstill until the vehicle has moved `distance_m` [A], in place of a + b k where that is less. Left
+/// out: how long the vehicle has stood, and temperature.
 struct BreakawayParams {
   BreakawayLaw law = BreakawayLaw::kRollerBearings;
   double constant_n_per_kn = kRequired;
@@ -85,16 +85,14 @@ struct BreakawayParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Choice(
-        "law", law,
-        {{"roller_bearings", BreakawayLaw::kRollerBearings},
-         {"plain_bearings", BreakawayLaw::kPlainBearings},
-         {"constant", BreakawayLaw::kConstant}},
-        "roller_bearings: 28 / (q0 + 7) N/kN with q0 tonnes per axle; plain_bearings: 142 / (q0 + 7) [M]");
+    v.Choice("law", law,
+             {{"roller_bearings", BreakawayLaw::kRollerBearings},
+              {"plain_bearings", BreakawayLaw::kPlainBearings},
+              {"constant", BreakawayLaw::kConstant}},
+             "roller_bearings: 28 / (q0 + 7) N/kN with q0 tonnes per axle; plain_bearings: 142 / (q0 + 7) [M]");
     if (law == BreakawayLaw::kConstant)
       v.Number("constant_n_per_kn", constant_n_per_kn, kNonNegative, "of the law constant, per weight");
-    v.Number("distance_m", distance_m, kPositive,
-             "that the vehicle moves from standstill until it has started");
+    v.Number("distance_m", distance_m, kPositive, "that the vehicle moves from standstill until it has started");
   }
 };
 
@@ -141,7 +139,8 @@ struct PropulsionResistanceParams {
 /// @param axles    > 0
 ResistanceCoefficients CoefficientsOf(const PropulsionResistanceParams& p, double mass_kg, int axles);
 
-/// Resistance of a vehicle's bearings while it starts [N], >= 0; opposes motion, set-valued at rest. Arguments as above.
+/// Resistance of a vehicle's bearings while it starts [N], >= 0; opposes motion, set-valued at rest. Arguments as
+/// above.
 double BreakawayResistance(const BreakawayParams& p, double mass_kg, int axles);
 
 /// Resistance that arises at wheels and bearings [N], even in the speed; opposes motion, set-valued at rest.

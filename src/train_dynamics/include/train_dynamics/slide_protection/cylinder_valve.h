@@ -37,8 +37,7 @@ struct CylinderValveParams {
 class CylinderValve {
  public:
   CylinderValve(const CylinderValveParams& params, double dt)
-      : fills_(1.0 - Exp(-dt / params.fill_time_constant_s)),
-        keeps_(Exp(-dt / params.vent_time_constant_s)) {}
+      : fills_(1.0 - Exp(-dt / params.fill_time_constant_s)), keeps_(Exp(-dt / params.vent_time_constant_s)) {}
 
   /// The cylinder's pressure at the end of the step [Pa]. @param pressure_pa  at its start
   double Next(ValveState state, double pressure_pa, double supply_pa) const {

@@ -43,10 +43,10 @@ struct SlideProtectionParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name, "name of the wheel-slide protection, for people");
-    v.Choice("controller", controller,
-             {{"threshold_3state", SlideController::kThreshold3State},
-              {"creep_control", SlideController::kCreepControl}},
-             "threshold_3state: thresholds of slip and deceleration; creep_control: aims at a slip");
+    v.Choice(
+        "controller", controller,
+        {{"threshold_3state", SlideController::kThreshold3State}, {"creep_control", SlideController::kCreepControl}},
+        "threshold_3state: thresholds of slip and deceleration; creep_control: aims at a slip");
     v.Number("sampling_period_s", sampling_period_s, kPositive, "T_s, a multiple of dt_s");
     v.Choice("reference_speed", reference_speed,
              {{"true", ReferenceSpeed::kTrue}, {"estimated", ReferenceSpeed::kEstimated}},
@@ -122,8 +122,7 @@ class SlideProtection {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <std::size_t kWheelsets>
-void SlideProtection::Sample(long step, double speed_mps,
-                             const std::array<double, kWheelsets>& wheel_speed_mps,
+void SlideProtection::Sample(long step, double speed_mps, const std::array<double, kWheelsets>& wheel_speed_mps,
                              ProtectionState<static_cast<int>(kWheelsets)>& state) const {
   constexpr double kMpsPerKmh = 1.0 / 3.6;
   const bool is_first = state.reference_speed_mps < 0.0;
@@ -169,8 +168,8 @@ void SlideProtection::Step(long step, double supply_pa, ProtectionState<kWheelse
       wheelset.valve = next;
     }
     if (wheelset.pressure_pa < 0.0) wheelset.pressure_pa = supply_pa;
-    wheelset.pressure_pa = valve_.Next(static_cast<ValveState>(static_cast<int>(wheelset.valve)),
-                                       wheelset.pressure_pa, supply_pa);
+    wheelset.pressure_pa =
+        valve_.Next(static_cast<ValveState>(static_cast<int>(wheelset.valve)), wheelset.pressure_pa, supply_pa);
   }
 }
 

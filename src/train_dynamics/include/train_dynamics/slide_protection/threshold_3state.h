@@ -8,8 +8,8 @@
 
 namespace train_dynamics {
 
-/// The thresholds of the controller `threshold_3state`; each slip threshold is the larger one of a share of the reference
-/// speed and a speed.
+/// The thresholds of the controller `threshold_3state`; each slip threshold is the larger one of a share of the
+/// reference speed and a speed.
 struct Threshold3StateParams {
   double vent_slip_ratio = 0.12, vent_slip_mps = 1.0;
   double alert_slip_ratio = 0.03, alert_slip_mps = 0.3;
@@ -23,12 +23,10 @@ struct Threshold3StateParams {
              "slip over reference speed beyond which the valve vents, whatever the wheel does");
     v.Number("vent_slip_mps", vent_slip_mps, kNonNegative,
              "least slip for that; the larger one of the two thresholds holds, here and below");
-    v.Number(
-        "alert_slip_ratio", alert_slip_ratio, kFraction,
-        "slip over reference speed beyond which it vents if the wheel slows down at alert_deceleration_mps2");
+    v.Number("alert_slip_ratio", alert_slip_ratio, kFraction,
+             "slip over reference speed beyond which it vents if the wheel slows down at alert_deceleration_mps2");
     v.Number("alert_slip_mps", alert_slip_mps, kNonNegative, "least slip for that");
-    v.Number("alert_deceleration_mps2", alert_deceleration_mps2, kNonNegative,
-             "deceleration of the wheel for that");
+    v.Number("alert_deceleration_mps2", alert_deceleration_mps2, kNonNegative, "deceleration of the wheel for that");
     v.Number("hold_slip_ratio", hold_slip_ratio, kFraction,
              "slip over reference speed beyond which it holds, or vents if the wheel still slows down");
     v.Number("hold_slip_mps", hold_slip_mps, kNonNegative, "least slip for that");
@@ -57,8 +55,7 @@ struct Threshold3State {
       return slip > std::max(ratio * wheel.reference_speed_mps, least_mps);
     };
     if (beyond(params.vent_slip_ratio, params.vent_slip_mps)) return ValveState::kVent;
-    if (acceleration < -params.alert_deceleration_mps2 &&
-        beyond(params.alert_slip_ratio, params.alert_slip_mps))
+    if (acceleration < -params.alert_deceleration_mps2 && beyond(params.alert_slip_ratio, params.alert_slip_mps))
       return ValveState::kVent;
     if (!beyond(params.hold_slip_ratio, params.hold_slip_mps)) return ValveState::kFill;
     return acceleration < -params.hold_deceleration_mps2 ? ValveState::kVent : ValveState::kHold;

@@ -12,12 +12,11 @@ namespace train_dynamics {
 
 /// What a controller reads of one wheelset at a sample. Speeds are positive in the vehicle's direction of travel.
 struct WheelReading {
-  double reference_speed_mps;  ///< v_ref, the vehicle's speed as the controller believes it, >= 0
-  double
-      reference_acceleration_mps2;  ///< v_ref less that of the sample before, over the period; 0 at the first
-  double wheel_speed_mps;           ///< u = r omega
-  double wheel_acceleration_mps2;   ///< a, of u likewise
-  double cylinder_pressure_pa;      ///< of the wheelset, >= 0
+  double reference_speed_mps;          ///< v_ref, the vehicle's speed as the controller believes it, >= 0
+  double reference_acceleration_mps2;  ///< v_ref less that of the sample before, over the period; 0 at the first
+  double wheel_speed_mps;              ///< u = r omega
+  double wheel_acceleration_mps2;      ///< a, of u likewise
+  double cylinder_pressure_pa;         ///< of the wheelset, >= 0
 
   double Slip() const { return reference_speed_mps - wheel_speed_mps; }  ///< s [m/s]; braking: positive
   double SlipRate() const { return reference_acceleration_mps2 - wheel_acceleration_mps2; }  ///< [m/s^2]
@@ -32,8 +31,8 @@ enum class ReferenceSpeed {
 /// The next estimate of the reference speed [m/s].
 /// @param fastest_wheel_mps  max over the wheelsets of |u|
 /// @param before_mps         the estimate of the sample before; 0 at the first
-inline double EstimatedReference(double fastest_wheel_mps, double before_mps,
-                                 double largest_deceleration_mps2, double period_s) {
+inline double EstimatedReference(double fastest_wheel_mps, double before_mps, double largest_deceleration_mps2,
+                                 double period_s) {
   return std::max(fastest_wheel_mps, before_mps - largest_deceleration_mps2 * period_s);
 }
 

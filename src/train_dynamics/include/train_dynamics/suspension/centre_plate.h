@@ -20,8 +20,7 @@ struct CentrePlateParams {
              "of the whole plate, vertical; the same longitudinally");
     v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative,
              "of the whole plate, vertical; the same longitudinally");
-    v.Number("rim_offset_m", rim_offset_m, kPositive,
-             "distance of the two rim points before and behind the centre");
+    v.Number("rim_offset_m", rim_offset_m, kPositive, "distance of the two rim points before and behind the centre");
     v.Number("height_m", height_m, kFinite, "height above rail at which the longitudinal force acts");
   }
 };

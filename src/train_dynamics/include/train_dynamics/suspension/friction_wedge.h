@@ -19,8 +19,7 @@ struct FrictionWedgeParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive,
-             "stiffness of the spring under the wedge");
+    v.Number("outer_stiffness_n_per_m", outer_stiffness_n_per_m, kPositive, "stiffness of the spring under the wedge");
     v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative,
              "stiffness of its inner spring; 0: none");
     v.Number("stage1_travel_m", stage1_travel_m, kNonNegative,
@@ -35,8 +34,7 @@ struct FrictionWedgeParams {
              "kinetic friction on both surfaces");
     v.Number("blend_speed_mps", blend_speed_mps, kPositive,
              "sliding speed at which half of the drop from static to kinetic friction has happened");
-    v.Number("offset_m", offset_m, kPositive,
-             "distance of the wedges before and behind the bolster's centre");
+    v.Number("offset_m", offset_m, kPositive, "distance of the wedges before and behind the bolster's centre");
     v.Check(kinetic_friction_coefficient <= static_friction_coefficient, "kinetic_friction_coefficient",
             "must be at most static_friction_coefficient");
   }
@@ -102,11 +100,9 @@ template <class T>
 WedgeFrictionBounds<T> WedgeFriction(const FrictionWedge& wedge, T spring_force, T rate) {
   const FrictionWedgeParams& p = wedge.params;
   const T relative_rate = rate * (1.0 / p.blend_speed_mps);
-  const T mu =
-      p.kinetic_friction_coefficient + (p.static_friction_coefficient - p.kinetic_friction_coefficient) /
-                                           (1.0 + relative_rate * relative_rate);
-  return {spring_force * (wedge.ForceRatio(-mu) - wedge.kappa),
-          spring_force * (wedge.ForceRatio(mu) - wedge.kappa)};
+  const T mu = p.kinetic_friction_coefficient +
+               (p.static_friction_coefficient - p.kinetic_friction_coefficient) / (1.0 + relative_rate * relative_rate);
+  return {spring_force * (wedge.ForceRatio(-mu) - wedge.kappa), spring_force * (wedge.ForceRatio(mu) - wedge.kappa)};
 }
 
 }  // namespace train_dynamics

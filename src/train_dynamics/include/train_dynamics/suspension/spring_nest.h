@@ -22,15 +22,12 @@ struct SpringNestParams {
              "stiffness of the outer springs of the half nest");
     v.Number("inner_stiffness_n_per_m", inner_stiffness_n_per_m, kNonNegative,
              "stiffness of its inner springs, in addition from stage1_travel_m on");
-    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative,
-             "compression at which the inner springs take load");
-    v.Number("stage2_travel_m", stage2_travel_m, kNonNegative,
-             "further compression until the coils are solid");
+    v.Number("stage1_travel_m", stage1_travel_m, kNonNegative, "compression at which the inner springs take load");
+    v.Number("stage2_travel_m", stage2_travel_m, kNonNegative, "further compression until the coils are solid");
     v.Number("solid_stiffness_n_per_m", solid_stiffness_n_per_m, kPositive, "stiffness of the solid coils");
     v.Number("rebound_clearance_m", rebound_clearance_m, kNonNegative,
              "extension at which the bolster meets the rebound stop");
-    v.Number("offset_m", offset_m, kNonNegative,
-             "distance of the half nest before and behind the bolster's centre");
+    v.Number("offset_m", offset_m, kNonNegative, "distance of the half nest before and behind the bolster's centre");
     v.Number("damping_ns_per_m", damping_ns_per_m, kNonNegative, "of a linear damper beside the half nest");
   }
 };
@@ -43,8 +40,7 @@ struct SpringNestParams {
 template <class T>
 T SpringNestForce(const SpringNestParams& p, T d) {
   const T zero(0.0);
-  return p.outer_stiffness_n_per_m * Max(zero, d) +
-         p.inner_stiffness_n_per_m * Max(zero, d - p.stage1_travel_m) +
+  return p.outer_stiffness_n_per_m * Max(zero, d) + p.inner_stiffness_n_per_m * Max(zero, d - p.stage1_travel_m) +
          p.solid_stiffness_n_per_m *
              (Max(zero, d - (p.stage1_travel_m + p.stage2_travel_m)) - Max(zero, -d - p.rebound_clearance_m));
 }
@@ -56,10 +52,9 @@ T SpringNestEnergy(const SpringNestParams& p, T d) {
     const T closed = Max(T(0.0), x);
     return 0.5 * closed * closed;
   };
-  return p.outer_stiffness_n_per_m * half_square(d) +
-         p.inner_stiffness_n_per_m * half_square(d - p.stage1_travel_m) +
-         p.solid_stiffness_n_per_m * (half_square(d - (p.stage1_travel_m + p.stage2_travel_m)) +
-                                      half_square(-d - p.rebound_clearance_m));
+  return p.outer_stiffness_n_per_m * half_square(d) + p.inner_stiffness_n_per_m * half_square(d - p.stage1_travel_m) +
+         p.solid_stiffness_n_per_m *
+             (half_square(d - (p.stage1_travel_m + p.stage2_travel_m)) + half_square(-d - p.rebound_clearance_m));
 }
 
 }  // namespace train_dynamics

@@ -15,8 +15,7 @@ struct DipParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("from_m", from_m, kFinite, "position at which the dip begins");
-    v.Number("depth_m", depth_m, Range{-1.0, 1.0, false, false},
-             "H, depth in the middle of the dip; negative: a hump");
+    v.Number("depth_m", depth_m, Range{-1.0, 1.0, false, false}, "H, depth in the middle of the dip; negative: a hump");
     v.Number("length_m", length_m, kPositive, "L, length of the dip: z = (H / 2) (1 - cos(2 pi x / L))");
   }
 };

@@ -8,8 +8,8 @@
 
 namespace train_dynamics {
 
-/// A patch of rail with a surface of its own, on [from_m, to_m), in place of the vehicles' `wheel_rail.adhesion`: either
-/// mu0 alone, beside which A, B, kA and kS stay the vehicle's, or a whole adhesion part.
+/// A patch of rail with a surface of its own, on [from_m, to_m), in place of the vehicles' `wheel_rail.adhesion`:
+/// either mu0 alone, beside which A, B, kA and kS stay the vehicle's, or a whole adhesion part.
 ///
 /// Around each end of a patch that has a ramp, over [end - ramp_length_m / 2, end + ramp_length_m / 2], mu0, A, B, kA
 /// and kS go linearly from the surface before to the one behind. Where two patches touch, the longer ramp holds.
@@ -31,8 +31,7 @@ struct FrictionPatchParams {
              "length around each end of the patch over which the surface changes linearly; default 1 m [A] "
              "with adhesion, else 0");
     v.Check(from_m < to_m, "to_m", "must be greater than from_m", {"from_m"});
-    v.Check(friction_coefficient || adhesion, "friction_coefficient", "must be given, or else adhesion",
-            {"adhesion"});
+    v.Check(friction_coefficient || adhesion, "friction_coefficient", "must be given, or else adhesion", {"adhesion"});
     v.Check(!(friction_coefficient && adhesion), "friction_coefficient",
             "must not stand beside adhesion, which has one", {"adhesion"});
   }

@@ -9,11 +9,10 @@
 /// What a route has beside grades and surfaces, by position along it.
 namespace train_dynamics {
 
-/// A curve of constant radius on [from_m, to_m); the track is straight outside of all curves. Transition curves are left
-/// out: the curvature steps.
+/// A curve of constant radius on [from_m, to_m); the track is straight outside of all curves. Transition curves are
+/// left out: the curvature steps.
 struct CurveParams {
-  static constexpr double kSmallestRadius =
-      50.0;  ///< [m] below it the laws of curving resistance hold no longer
+  static constexpr double kSmallestRadius = 50.0;  ///< [m] below it the laws of curving resistance hold no longer
 
   double from_m = kRequired;
   double to_m = kRequired;
@@ -23,9 +22,8 @@ struct CurveParams {
   void Visit(Visitor& v) {
     v.Number("from_m", from_m, kFinite, "position at which the curve begins");
     v.Number("to_m", to_m, kFinite, "position at which the curve ends");
-    v.Number(
-        "radius_m", radius_m, kFinite,
-        "radius of the centre line, at least 50 m; > 0 to the right, < 0 to the left, as positions rise");
+    v.Number("radius_m", radius_m, kFinite,
+             "radius of the centre line, at least 50 m; > 0 to the right, < 0 to the left, as positions rise");
     v.Check(from_m < to_m, "to_m", "must be greater than from_m", {"from_m"});
     v.Check(std::abs(radius_m) >= kSmallestRadius, "radius_m",
             "must be at least 50 m, to the right (> 0) or to the left (< 0)", {"radius_m"});
@@ -102,10 +100,9 @@ struct RoutePointParams {
             "or position_km must be given, one of them", {"position_km"});
     v.Check(!(grade_permille && grade_percent), "grade_permille", "must not stand beside grade_percent",
             {"grade_percent"});
-    v.Check(
-        !radius_m || *radius_m == 0.0 || std::abs(*radius_m) >= CurveParams::kSmallestRadius, "radius_m",
-        "must be at least 50 m, to the right (> 0) or to the left (< 0), or 0 where the track is straight",
-        {"radius_m"});
+    v.Check(!radius_m || *radius_m == 0.0 || std::abs(*radius_m) >= CurveParams::kSmallestRadius, "radius_m",
+            "must be at least 50 m, to the right (> 0) or to the left (< 0), or 0 where the track is straight",
+            {"radius_m"});
   }
 
   double Position() const { return position_m ? *position_m : 1000.0 * position_km.value_or(0.0); }  ///< [m]

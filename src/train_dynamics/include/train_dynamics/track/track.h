@@ -59,7 +59,7 @@ struct TrackParams {
   std::vector<StepValue> SpeedLimits() const;        ///< [m/s]
   std::vector<FrictionPatchParams> Patches() const;  ///< in the order in which they hold
   std::vector<StationParams> Stations() const;       ///< by rising position
-  Stretch Extent() const;  ///< where the route is known; infinite where nothing says so
+  Stretch Extent() const;                            ///< where the route is known; infinite where nothing says so
 
  private:
   std::vector<BrokenRule> BrokenRules() const;
@@ -113,8 +113,8 @@ class Track {
                                    double* values) const;
 
  private:
-  /// What a piece of track has of the patches: one surface, or a ramp between two. Indices of patches; -1: the vehicle's
-  /// own surface.
+  /// What a piece of track has of the patches: one surface, or a ramp between two. Indices of patches; -1: the
+  /// vehicle's own surface.
   struct SurfacePiece {
     int before, behind;
   };

@@ -14,8 +14,7 @@ struct DriveParams {
   void Visit(Visitor& v) {
     v.Number("rise_rate_n_per_s", rise_rate_n_per_s, kPositive, "largest growth of the effort's size [A]");
     v.Number("fall_rate_n_per_s", fall_rate_n_per_s, kPositive, "largest fall of the effort's size [A]");
-    v.Number("changeover_s", changeover_s, kNonNegative,
-             "time without effort between traction and dynamic brake [A]");
+    v.Number("changeover_s", changeover_s, kNonNegative, "time without effort between traction and dynamic brake [A]");
   }
 };
 

@@ -23,8 +23,7 @@ struct DynamicBrakeParams {
     v.Number("rim_power_w", rim_power_w, kPositive, "P_db, braking power at the rims");
     v.Number("fade_speed_mps", fade_speed_mps, kPositive,
              "v_a, below which the effort fades: 5.4 for DC [S], 1.0 for AC drives [A]");
-    v.Numbers("effort_share", effort_share, kFraction,
-              "share of the effort of each notch, from notch 1, ascending");
+    v.Numbers("effort_share", effort_share, kFraction, "share of the effort of each notch, from notch 1, ascending");
     v.Check(!effort_share.empty(), "effort_share", "must list the share of each notch");
     v.Check(IsAscending(effort_share), "effort_share", "must ascend from notch to notch");
   }

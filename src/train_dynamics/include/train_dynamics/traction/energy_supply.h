@@ -29,8 +29,7 @@ struct EnergySupplyParams {
     v.Check(efficiency.size() == power_share.size(), "efficiency", "must have as many values as power_share",
             {"power_share"});
     v.Number("idle_power_w", idle_power_w, kNonNegative, "power taken in addition at all times");
-    v.Number("recovered_share", recovered_share, kFraction,
-             "share of the dynamic brake's power that is fed back");
+    v.Number("recovered_share", recovered_share, kFraction, "share of the dynamic brake's power that is fed back");
     v.Number("fuel_energy_j_per_kg", fuel_energy_j_per_kg, kPositive,
              "lower heating value of the fuel (diesel 42.7e6); not given: electric");
     v.Check(!fuel_energy_j_per_kg || recovered_share == 0.0, "recovered_share",

@@ -27,8 +27,7 @@ struct TractionParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Text("name", name, "name of the traction equipment, for people");
-    v.Group("tractive_effort", tractive_effort,
-            "what the locomotive can pull with, at the rims of its driven wheels");
+    v.Group("tractive_effort", tractive_effort, "what the locomotive can pull with, at the rims of its driven wheels");
     v.Group("dynamic_brake", dynamic_brake, "brake by the traction motors; not given: none");
     v.Group("drive", drive, "how fast the effort follows the controller");
     v.Integers("driven_wheelsets", driven_wheelsets, Range{1, 6, false, false},
@@ -60,7 +59,6 @@ struct NotchCommand {
 /// The steady effort that a command asks for [N]: traction positive, dynamic brake negative.
 /// @param speed_mps        of the locomotive
 /// @param driven_weight_n  on its driven wheels
-double WantedEffort(const TractionParams& p, const NotchCommand& command, double speed_mps,
-                    double driven_weight_n);
+double WantedEffort(const TractionParams& p, const NotchCommand& command, double speed_mps, double driven_weight_n);
 
 }  // namespace train_dynamics

@@ -22,10 +22,8 @@ struct SlipControlParams {
     v.Number("target_creepage", target_creepage, Range{0.0, 1.0, true, true},
              "slip speed s* over the train's speed that the control aims at");
     v.Number("least_slip_mps", least_slip_mps, kPositive, "least value of s* [A]");
-    v.Number("gain_per_mps", gain_per_mps, kPositive,
-             "share of the torque that is taken per slip speed beyond s* [A]");
-    v.Number("recovery_per_s", recovery_per_s, kPositive,
-             "share of the torque that comes back per second [A]");
+    v.Number("gain_per_mps", gain_per_mps, kPositive, "share of the torque that is taken per slip speed beyond s* [A]");
+    v.Number("recovery_per_s", recovery_per_s, kPositive, "share of the torque that comes back per second [A]");
   }
 };
 
@@ -38,8 +36,7 @@ struct SlipControlParams {
 /// @param reduction        of the sample before
 /// @param speed_mps        v, of the vehicle: the ideal reference
 /// @param wheel_speed_mps  u, of the tread
-inline double NextReduction(const SlipControlParams& p, double reduction, double speed_mps,
-                            double wheel_speed_mps) {
+inline double NextReduction(const SlipControlParams& p, double reduction, double speed_mps, double wheel_speed_mps) {
   // Traction pulls forwards: treads that are faster than the vehicle slip, whichever way it rolls.
   const double slip_mps = wheel_speed_mps - speed_mps;
   const double target_mps = Max(p.least_slip_mps, p.target_creepage * std::abs(speed_mps));

@@ -28,13 +28,12 @@ struct ThrottleParams {
     v.Numbers("effort_share", effort_share, kFraction,
               "share of the starting effort of each notch, from notch 1, ascending: n / 8 (Cole, Handbook of "
               "Railway Vehicle Dynamics, ch. 9, 2006) [M]");
-    v.Numbers(
-        "power_share", power_share, kFraction,
-        "share of the power of each notch: a C44-9W's, read off its display (A. Krug, Railroad Facts) [S]");
+    v.Numbers("power_share", power_share, kFraction,
+              "share of the power of each notch: a C44-9W's, read off its display (A. Krug, Railroad Facts) [S]");
     v.Check(!effort_share.empty(), "effort_share", "must list the share of each notch");
     v.Check(IsAscending(effort_share), "effort_share", "must ascend from notch to notch");
-    v.Check(power_share.size() == effort_share.size(), "power_share",
-            "must have as many values as effort_share", {"effort_share"});
+    v.Check(power_share.size() == effort_share.size(), "power_share", "must have as many values as effort_share",
+            {"effort_share"});
     v.Check(IsAscending(power_share), "power_share", "must ascend from notch to notch");
   }
 
@@ -53,8 +52,7 @@ struct EffortTableParams {
     v.Numbers("effort_n", effort_n, kPositive, "effort at each of them, not ascending");
     v.Check(!speed_kmh.empty(), "speed_kmh", "must list the speeds of the table");
     v.Check(IsAscending(speed_kmh), "speed_kmh", "must ascend");
-    v.Check(effort_n.size() == speed_kmh.size(), "effort_n", "must have as many values as speed_kmh",
-            {"speed_kmh"});
+    v.Check(effort_n.size() == speed_kmh.size(), "effort_n", "must have as many values as speed_kmh", {"speed_kmh"});
     v.Check(std::is_sorted(effort_n.rbegin(), effort_n.rend()), "effort_n", "must not ascend");
   }
 
@@ -74,15 +72,12 @@ struct TractiveEffortParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("starting_effort_n", starting_effort_n, kPositive,
-             "F_start, effort at the rims at the highest notch");
+    v.Number("starting_effort_n", starting_effort_n, kPositive, "F_start, effort at the rims at the highest notch");
     v.Number("rim_power_w", rim_power_w, kPositive,
              "P, power at the rims: 0.93 of the engine's with AC, 0.85 with DC drives [S]");
     v.Group("throttle", throttle, "shares of effort and power of each notch");
-    v.Group("table", table,
-            "measured effort of the highest notch over speed; not given: min(F_start, P / v)");
-    v.Group("usable_adhesion", usable_adhesion,
-            "adhesion that the control makes use of, which limits the effort");
+    v.Group("table", table, "measured effort of the highest notch over speed; not given: min(F_start, P / v)");
+    v.Group("usable_adhesion", usable_adhesion, "adhesion that the control makes use of, which limits the effort");
   }
 };
 

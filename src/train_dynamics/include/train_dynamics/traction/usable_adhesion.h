@@ -22,18 +22,16 @@ struct UsableAdhesionParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Choice(
-        "law", law,
-        {{"curtius_kniffler", UsableAdhesionLaw::kCurtiusKniffler},
-         {"constant", UsableAdhesionLaw::kConstant},
-         {"unlimited", UsableAdhesionLaw::kUnlimited}},
-        "curtius_kniffler: falls over speed; constant: coefficient; unlimited: the effort is not limited");
+    v.Choice("law", law,
+             {{"curtius_kniffler", UsableAdhesionLaw::kCurtiusKniffler},
+              {"constant", UsableAdhesionLaw::kConstant},
+              {"unlimited", UsableAdhesionLaw::kUnlimited}},
+             "curtius_kniffler: falls over speed; constant: coefficient; unlimited: the effort is not limited");
     if (law == UsableAdhesionLaw::kConstant) {
       v.Number("coefficient", coefficient, Range{0.02, 0.5, false, false},
                "effort over the weight on driven wheels (modern AC locomotives: 0.36 to 0.43 claimed)");
     }
-    v.Number("factor", factor, Range{0.1, 2.0, false, false},
-             "factor on the law: 1 for a dry rail, 1.2 with sand");
+    v.Number("factor", factor, Range{0.1, 2.0, false, false}, "factor on the law: 1 for a dry rail, 1.2 with sand");
   }
 };
 

@@ -2,7 +2,8 @@
 
 namespace train_dynamics {
 
-/// Braked-weight percentage lambda [%] of a vehicle that stops alone, emergency, P, level, from 100 or 120 km/h over s [m]:
+/// Braked-weight percentage lambda [%] of a vehicle that stops alone, emergency, P, level, from 100 or 120 km/h over s
+/// [m]:
 ///
 ///   s = 61300 / (lambda + 8.9)  at 100 km/h,   s = 83634 / (lambda + 8.8)  at 120 km/h        (UIC 544-1 [M])
 ///
@@ -16,7 +17,8 @@ enum class BrakingPosition { kPassenger, kGoods };
 ///
 ///   s = v T + integral of v dv / A(v),   A = 0.0075 lambda + 0.076 m/s2 up to 16.85 lambda^0.428 km/h,
 ///
-/// above it a cubic of lambda for each range of speed; build-up time T = a + b l + c l^2 of a freight train, l = L / 100 m.
+/// above it a cubic of lambda for each range of speed; build-up time T = a + b l + c l^2 of a freight train, l = L /
+/// 100 m.
 ///
 /// @param lambda  [%], 30 to 250     @param length_m  of the train, to 1500
 /// @throws std::invalid_argument outside these ranges, or above 200 km/h

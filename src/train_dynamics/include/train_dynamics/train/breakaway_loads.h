@@ -9,8 +9,8 @@ namespace train_dynamics {
 
 /// The resistance of bearings on vehicles that start (BreakawayParams).
 ///
-/// A vehicle starts from the place where its coupler heads last moved at no more than 1 mm/s at an exchange's start, until it
-/// is `distance_m` away from it, in either direction.
+/// A vehicle starts from the place where its coupler heads last moved at no more than 1 mm/s at an exchange's start,
+/// until it is `distance_m` away from it, in either direction.
 class BreakawayLoads {
  public:
   explicit BreakawayLoads(const Consist& consist);
@@ -30,8 +30,7 @@ class BreakawayLoads {
 
  private:
   std::vector<double> resistance_n_, distance_m_;  ///< [vehicle]; 0 where it has none
-  std::vector<double>
-      stood_at_m_;  ///< [vehicle] displacement where it last stood, -inf: nowhere; empty: none has any
+  std::vector<double> stood_at_m_;  ///< [vehicle] displacement where it last stood, -inf: nowhere; empty: none has any
 };
 
 }  // namespace train_dynamics

@@ -38,8 +38,7 @@ struct DriversTrain {
 };
 
 /// Collects it. The brake's responses are those of the scenario's brake on a train at rest.
-DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake,
-                              const Consist& consist);
+DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake, const Consist& consist);
 
 /// What the built-in driver remembers from one period to the next.
 struct BuiltInDriverState {
@@ -62,9 +61,9 @@ struct BuiltInDriverState {
 
 /// The highest speed [m/s] that a driver holds at this place, and the deceleration [m/s2] (<= 0) that it asks for.
 ///
-/// The lowest of: the speed to hold; the limit under the train, less the margin; and, for each lower limit v_l ahead at a distance
-/// s, less the distance covered in `lead_s`, sqrt(v_l^2 + 2 b s) with b = deceleration_mps2; likewise towards the stop, with the creep
-/// speed. b counts where one of the last two is the lowest.
+/// The lowest of: the speed to hold; the limit under the train, less the margin; and, for each lower limit v_l ahead at
+/// a distance s, less the distance covered in `lead_s`, sqrt(v_l^2 + 2 b s) with b = deceleration_mps2; likewise
+/// towards the stop, with the creep speed. b counts where one of the last two is the lowest.
 struct SpeedGoal {
   double speed_mps;
   double acceleration_mps2;
@@ -78,22 +77,22 @@ double StoppingDistance(const BuiltInDriverParams& p, const DriversTrain& train,
 
 /// The driver's commands of this period.
 ///
-///   force = M_moving (b c + (goal - v) / T) + M (g i + r)      c = 2 v / goal - 1 in [0, 1]; r learnt, i the mean grade
+///   force = M_moving (b c + (goal - v) / T) + M (g i + r)      c = 2 v / goal - 1 in [0, 1]; r learnt, i the mean
+///   grade
 ///
-/// The force is given by these rules: traction and brakes never work together, except to start uphill; the dynamic brake comes
-/// first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. A notch is taken when
-/// the force is more than 0.7 of the way to the next. The air brake: a first reduction, steps to what is needed, at most
-/// the largest; a brake of graduated release is let down in steps, another one is released once the dynamic brake alone is
-/// more than enough; after a release the driver waits recharge_time_s, and re-applies one step deeper if the speed does not allow
-/// that. A stop: creep, then the reduction whose predicted distance fits, then the largest at rest. After an emergency it
-/// closes the throttle, and does nothing more before a release.
+/// The force is given by these rules: traction and brakes never work together, except to start uphill; the dynamic
+/// brake comes first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. A
+/// notch is taken when the force is more than 0.7 of the way to the next. The air brake: a first reduction, steps to
+/// what is needed, at most the largest; a brake of graduated release is let down in steps, another one is released once
+/// the dynamic brake alone is more than enough; after a release the driver waits recharge_time_s, and re-applies one
+/// step deeper if the speed does not allow that. A stop: creep, then the reduction whose predicted distance fits, then
+/// the largest at rest. After an emergency it closes the throttle, and does nothing more before a release.
 ///
 /// Left out: driving backwards, several controls of distributed power, slack.
 ///
 /// @param stops_m  [stop] first vehicle's centre
 std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrain& train,
-                                 const std::vector<double>& stops_m, const DriverView& view,
-                                 BuiltInDriverState& state);
+                                 const std::vector<double>& stops_m, const DriverView& view, BuiltInDriverState& state);
 
 /// Positions of the stops. Stations must be known to the route.
 std::vector<double> StopPositions(const BuiltInDriverParams& p, const TrackParams& track);

@@ -51,11 +51,10 @@ class ConditionWatch {
 
 /// The driver's commands that are given while the train runs, and the end of the run.
 ///
-/// A command with a condition is watched for from the moment on when all those before it in the list have been given: the
-/// list is executed in order. Commands with a time wait for nothing, and are not part of this schedule: brake and
+/// A command with a condition is watched for from the moment on when all those before it in the list have been given:
+/// the list is executed in order. Commands with a time wait for nothing, and are not part of this schedule: brake and
 /// locomotives have them from the start. Patches of rail are given here, whatever their time. All conditions are judged
-/// at the start of an exchange, so that what follows is
-/// the same for any number of threads, ranks and machines.
+/// at the start of an exchange, so that what follows is the same for any number of threads, ranks and machines.
 class CommandSchedule {
  public:
   /// @param until  where it holds, the run is to end; `standing` counts once the train has moved

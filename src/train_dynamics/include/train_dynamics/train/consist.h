@@ -19,9 +19,7 @@ inline constexpr std::initializer_list<std::pair<const char*, VehicleModel>> kVe
 
 /// The names of the states of slack in configurations.
 inline constexpr std::initializer_list<std::pair<const char*, SlackState>> kSlackStates = {
-    {"stretched", SlackState::kStretched},
-    {"middle", SlackState::kMiddle},
-    {"bunched", SlackState::kBunched}};
+    {"stretched", SlackState::kStretched}, {"middle", SlackState::kMiddle}, {"bunched", SlackState::kBunched}};
 
 /// A run of equal vehicles, possibly in permanently joined units.
 struct ConsistGroupParams {
@@ -46,17 +44,15 @@ struct ConsistGroupParams {
              "how much of its load each vehicle of the group carries, in place of the vehicle's own");
     v.Check(vehicle.load || !vehicle.load_fraction, "load_fraction",
             "needs a vehicle with load: what it carries when it is full", {"vehicle.load"});
-    v.Choice("model", model, kVehicleModels,
-             "model of the group's vehicles; not given: that of the scenario");
+    v.Choice("model", model, kVehicleModels, "model of the group's vehicles; not given: that of the scenario");
     v.Text("external", external,
            "node whose services move the vehicles, in the train's namespace; empty: this program moves them");
-    v.Check(external.empty() || !model, "model",
-            "must not be given for external vehicles: their node is their model", {"external"});
+    v.Check(external.empty() || !model, "model", "must not be given for external vehicles: their node is their model",
+            {"external"});
     v.Number("initial_speed_kmh", initial_speed_kmh, Range{-400.0, 400.0, false, false},
              "speed of the group at time 0; not given: that of the scenario");
     v.Integer("count", count, Range{1, 100000, false, false}, "number of vehicles");
-    v.Flag("locomotive", locomotive,
-           "the vehicles are shown as locomotives; those with traction are, anyway");
+    v.Flag("locomotive", locomotive, "the vehicles are shown as locomotives; those with traction are, anyway");
     v.Number("command_delay_s", command_delay_s, kNonNegative,
              "delay of the driver's commands on their way to locomotives of the group");
     v.Text("name", name, "by which commands name the locomotives of the group; several groups may share it");
@@ -64,11 +60,10 @@ struct ConsistGroupParams {
              "where the slack of the connections in front of the group's vehicles is at time 0; not given: "
              "that of "
              "the scenario");
-    v.Number(
-        "trapped_cylinder_pressure_kpa", trapped_cylinder_pressure_kpa, Range{0.0, 1000.0, false, false},
-        "air that stays in the brake cylinders of the group for the whole run, whatever the driver does: the "
-        "control valves are cut out, as of wagons left standing with brakes applied or of a brake that "
-        "sticks; 0: they were bled; not given: the brake works");
+    v.Number("trapped_cylinder_pressure_kpa", trapped_cylinder_pressure_kpa, Range{0.0, 1000.0, false, false},
+             "air that stays in the brake cylinders of the group for the whole run, whatever the driver does: the "
+             "control valves are cut out, as of wagons left standing with brakes applied or of a brake that "
+             "sticks; 0: they were bled; not given: the brake works");
     v.Check(!trapped_cylinder_pressure_kpa || !vehicle.brake_rigging.cut_out, "trapped_cylinder_pressure_kpa",
             "has no effect in a vehicle with brake_rigging.cut_out", {"vehicle.brake_rigging.cut_out"});
     v.Number("initial_throttle_notch", initial_throttle_notch, Range{0.0, 100.0, false, false},
@@ -79,8 +74,7 @@ struct ConsistGroupParams {
             "must be 0 beside an initial_dynamic_brake_notch", {"initial_dynamic_brake_notch"});
     v.Integer("vehicles_per_unit", vehicles_per_unit, Range{1, 100000, false, false},
               "vehicles that are permanently joined; 2: pairs, as of draw-bar wagons");
-    if (vehicles_per_unit > 1)
-      v.Part("unit_connection", unit_connection, "couplers", "connection within a unit");
+    if (vehicles_per_unit > 1) v.Part("unit_connection", unit_connection, "couplers", "connection within a unit");
     v.Check(vehicles_per_unit >= 1 && count % vehicles_per_unit == 0, "count",
             "must be a multiple of vehicles_per_unit", {"vehicles_per_unit"});
   }
@@ -121,8 +115,7 @@ struct Consist {
   std::vector<int> locomotives;              ///< indices of vehicles, ascending
   std::vector<double> command_delay_s;       ///< [type of vehicle]
   std::vector<NotchCommand> initial_notch;   ///< [type of vehicle]
-  std::vector<std::optional<SlackState>>
-      initial_slack;  ///< [type of vehicle] of the connections in front of it
+  std::vector<std::optional<SlackState>> initial_slack;  ///< [type of vehicle] of the connections in front of it
   std::vector<ConnectionParams> connection_types;
   std::vector<int> connection_type;  ///< [connection] between vehicles c and c + 1
   std::vector<double> centre_m;      ///< [vehicle] on the unstretched train; 0 = centre of the first, falling

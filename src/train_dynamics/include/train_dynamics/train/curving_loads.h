@@ -10,8 +10,8 @@ namespace train_dynamics {
 
 /// The resistance that curves put on the vehicles of a train:  F = q(R) m,  R at the vehicle's centre.
 ///
-/// Over an exchange it is the mean over the distance that the vehicle will cover at the speed of the exchange's start, so
-/// that the work in a curve is right however short the curve.
+/// Over an exchange it is the mean over the distance that the vehicle will cover at the speed of the exchange's start,
+/// so that the work in a curve is right however short the curve.
 class CurvingLoads {
  public:
   /// @param start_position_m  of the first vehicle's centre along the track

@@ -78,9 +78,8 @@ struct DriverCommand {
   void Visit(Visitor& v) {
     v.Number("time_s", time_s, kNonNegative, "when the command is given; or else when, or exchange");
     v.Group("when", when, "condition upon which the command is given");
-    v.Number(
-        "exchange", exchange, Range{0.0, 1e12, false, false},
-        "number of the exchange at whose start it is given: of commands that were given to a running train");
+    v.Number("exchange", exchange, Range{0.0, 1e12, false, false},
+             "number of the exchange at whose start it is given: of commands that were given to a running train");
     v.Choice("kind", kind, kDriverCommandKinds,
              "apply, emergency, release: the brake of the train; throttle, dynamic_brake, independent_brake, "
              "bail_off: locomotives; friction: a patch of rail comes, which is none of a driver's commands");
@@ -102,8 +101,7 @@ struct DriverCommand {
     if (IsOfLocomotives() || IsOfLocomotiveBrakes()) {
       v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
                  "locomotives that obey, from 1, or from -1 for the last; none: all, or those of group");
-      v.Text("group", group,
-             "name of the groups of the consist whose locomotives obey, in place of vehicles");
+      v.Text("group", group, "name of the groups of the consist whose locomotives obey, in place of vehicles");
       v.Check(group.empty() || vehicles.empty(), "group", "must not stand beside vehicles", {"vehicles"});
     }
     const int times = (time_s ? 1 : 0) + (when ? 1 : 0) + (exchange ? 1 : 0);
@@ -135,14 +133,13 @@ struct DriverCommand {
   std::string Text() const;
 };
 
-/// Whether a command of locomotives acts on the vehicles of a group: throttle and dynamic brake on those with traction, the
-/// brakes of locomotives on all locomotives.
+/// Whether a command of locomotives acts on the vehicles of a group: throttle and dynamic brake on those with traction,
+/// the brakes of locomotives on all locomotives.
 bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group);
 
 /// The rules between a patch of rail that comes on the way and the track under it.
 /// @param key  of the command
-std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key,
-                                   const TrackParams& track);
+std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key, const TrackParams& track);
 /// The rule that a run takes at most kMostPatchesOnTheWay of them, as a sentence about `kind`.
 std::string RuleOfPatches();
 

@@ -48,12 +48,10 @@ struct BuiltInDriverParams {
              "period at which the driver acts, a multiple of exchange_interval_s");
     v.Number("speed_kmh", speed_kmh, Range{0.0, 400.0},
              "speed to hold; not given: as fast as the route's limits allow");
-    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative,
-             "margin that the driver keeps below each limit");
+    v.Number("limit_margin_kmh", limit_margin_kmh, kNonNegative, "margin that the driver keeps below each limit");
     v.Number("deceleration_mps2", deceleration_mps2, Range{0.0, 1.5},
              "planned deceleration towards lower limits and stops");
-    v.Number("response_time_s", response_time_s, kPositive,
-             "time constant for correcting a difference in speed");
+    v.Number("response_time_s", response_time_s, kPositive, "time constant for correcting a difference in speed");
     v.Number("notch_time_s", notch_time_s, kNonNegative,
              "least time from one notch up, of throttle or dynamic brake, to the next");
     v.Number("recharge_time_s", recharge_time_s, kNonNegative,

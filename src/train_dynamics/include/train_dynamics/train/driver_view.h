@@ -23,23 +23,22 @@ struct PlaceAhead {
 struct DriverView {
   std::uint64_t exchange = 0;
   double time_s = 0.0;
-  double position_m = 0.0;  ///< of the first vehicle's centre: by it conditions and stops are judged
-  double front_m = 0.0, rear_m = 0.0;  ///< ends of the train
-  double speed_mps = 0.0;              ///< of the first vehicle, as its speedometer has it; forward positive
-  double speed_limit_mps = 0.0;        ///< the lowest under the train; infinite where there is none
-  double mean_grade = 0.0;             ///< [-] under the vehicles, by their masses; uphill positive
-  std::vector<PlaceAhead> limits_ahead;                    ///< from front_m (not included) as far as is seen
-  std::vector<PlaceAhead> grades_ahead;                    ///< likewise
-  std::vector<StationParams> stations_ahead;               ///< those that position_m has not passed, likewise
+  double position_m = 0.0;                    ///< of the first vehicle's centre: by it conditions and stops are judged
+  double front_m = 0.0, rear_m = 0.0;         ///< ends of the train
+  double speed_mps = 0.0;                     ///< of the first vehicle, as its speedometer has it; forward positive
+  double speed_limit_mps = 0.0;               ///< the lowest under the train; infinite where there is none
+  double mean_grade = 0.0;                    ///< [-] under the vehicles, by their masses; uphill positive
+  std::vector<PlaceAhead> limits_ahead;       ///< from front_m (not included) as far as is seen
+  std::vector<PlaceAhead> grades_ahead;       ///< likewise
+  std::vector<StationParams> stations_ahead;  ///< those that position_m has not passed, likewise
   double throttle_notch = 0.0, dynamic_brake_notch = 0.0;  ///< that the first locomotive obeys
-  double effort_n = 0.0;        ///< at the rims of all locomotives: traction positive, dynamic brake negative
-  double reduction_kpa = 0.0;   ///< of the brake pipe, as last asked for; 0 after a release
-  bool emergency = false;       ///< was asked for, and no release since
-  double brake_pipe_kpa = 0.0;  ///< gauge, at the first vehicle; NaN: the brake has no pipe that is computed
-  double cylinder_kpa = 0.0;    ///< gauge, of the first vehicle
-  double mean_cylinder_kpa = 0.0;  ///< gauge, of all vehicles
-  std::vector<double>
-      coupler_force_n;  ///< [connection] in the coming interval, tension positive; empty: not shown
+  double effort_n = 0.0;                ///< at the rims of all locomotives: traction positive, dynamic brake negative
+  double reduction_kpa = 0.0;           ///< of the brake pipe, as last asked for; 0 after a release
+  bool emergency = false;               ///< was asked for, and no release since
+  double brake_pipe_kpa = 0.0;          ///< gauge, at the first vehicle; NaN: the brake has no pipe that is computed
+  double cylinder_kpa = 0.0;            ///< gauge, of the first vehicle
+  double mean_cylinder_kpa = 0.0;       ///< gauge, of all vehicles
+  std::vector<double> coupler_force_n;  ///< [connection] in the coming interval, tension positive; empty: not shown
 };
 
 /// Sets where the driver's brake handle stands at a time, from the commands with a time and from those that were given.

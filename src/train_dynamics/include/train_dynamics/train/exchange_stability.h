@@ -18,8 +18,8 @@ namespace train_dynamics {
 ///
 /// with k and c of the law's tangent at kLargeCouplerForce (TangentAt in coupler/*.h).
 ///
-/// The friction's slope falls as soon as the gears move, so what grows is bounded at first: whole trains broke down at 1
-/// to 1.8 times this interval (docs/validation.md). Left out: solid stops, different vehicles side by side.
+/// The friction's slope falls as soon as the gears move, so what grows is bounded at first: whole trains broke down at
+/// 1 to 1.8 times this interval (docs/validation.md). Left out: solid stops, different vehicles side by side.
 ///
 /// @param head_mass_kg  see CouplerHeadMass
 double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg);

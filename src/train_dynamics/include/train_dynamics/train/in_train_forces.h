@@ -44,8 +44,7 @@ class InTrainForces {
   /// @param prediction_s  how far ahead of the exchange the forces are evaluated: H/2, or 0 for the Newmark
   /// integrator
   /// @param external  indices of the external vehicles, ascending: the work done on them is booked
-  InTrainForces(const Consist& consist, SlackState slack, double prediction_s,
-                const std::vector<int>& external = {});
+  InTrainForces(const Consist& consist, SlackState slack, double prediction_s, const std::vector<int>& external = {});
 
   /// Takes the heads' displacements at time 0, where the connections stand in their start state of slack.
   void Begin(const std::vector<double>& head_displacement_m);
@@ -124,9 +123,7 @@ class InTrainForces {
     int vehicle;
     double displacement_m = 0.0, work_j = 0.0;
   };
-  double ForceOf(int connection) const {
-    return sets_[places_[connection].set].force_n[places_[connection].at];
-  }
+  double ForceOf(int connection) const { return sets_[places_[connection].set].force_n[places_[connection].at]; }
 
   double prediction_s_;
   std::vector<External> external_;

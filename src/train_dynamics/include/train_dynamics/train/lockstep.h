@@ -38,8 +38,9 @@ struct ExchangeRequest : LoadArrays {
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
   bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
-  /// Those of rail that have come since the start of the run, each with a friction_coefficient and no ramp. They lie over those
-  /// of the track, later ones over earlier ones. All of them, in each exchange: a rank that comes later has them, too.
+  /// Those of rail that have come since the start of the run, each with a friction_coefficient and no ramp. They lie
+  /// over those of the track, later ones over earlier ones. All of them, in each exchange: a rank that comes later has
+  /// them, too.
   std::vector<FrictionPatchParams> friction_patches;
 };
 
@@ -73,8 +74,8 @@ struct ExchangeReply : ReplyArrays, VehicleRecords {
   std::vector<VehicleEnergy> energy;  ///< with a ledger
   std::vector<StateRow> snapshot;     ///< see VehicleBlock::Save
   std::vector<SlideEvent> slides;     ///< with a record: see VehicleBlock::TellSlides
-  /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none; with a
-  /// record
+  /// [vehicle][2 kMostWheelsets]: WagonState::creep_work of each wheelset, then brake_work; 0 where there is none; with
+  /// a record
   std::vector<double> wheelset_work_j;
 
   /// @param detailed  indices of the vehicles to be recorded in full detail
@@ -89,8 +90,7 @@ class Transport {
   virtual void Start(ExchangeReply& reply) = 0;
   /// Brings all vehicles to a state that a snapshot holds, at the beginning of an exchange; replies as Start.
   /// @throws SnapshotError if the snapshot does not fit
-  virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot,
-                      ExchangeReply& reply) = 0;
+  virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot, ExchangeReply& reply) = 0;
   /// Whether snapshots can be asked for; known once it has started.
   virtual bool GivesSnapshots() const { return true; }
   /// One exchange with every vehicle; returns when all have replied.

@@ -23,8 +23,7 @@ struct LocomotiveCommand {
   void Visit(Visitor& v) {
     v.Number("time_s", time_s, kNonNegative, "when the command is given");
     v.Choice("kind", kind,
-             {{"throttle", LocomotiveCommandKind::kThrottle},
-              {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}},
+             {{"throttle", LocomotiveCommandKind::kThrottle}, {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}},
              "throttle or dynamic_brake; each ends what the other has asked for");
     v.Number("notch", notch, Range{0.0, 100.0, false, false}, "0: off");
     v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
@@ -42,10 +41,9 @@ struct LocomotiveCommand {
 std::vector<BrokenRule> JudgeLocomotiveCommand(const LocomotiveCommand& command, const std::string& key,
                                                const TrainParams& train);
 
-/// The same of a command of the locomotives' own brakes: each vehicle named is a locomotive, its brake gives the pressure,
-/// and a bail-off has cylinders to empty.
-std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand& command,
-                                                    const std::string& key, const TrainParams& train,
-                                                    const BrakeSystemParams& brake);
+/// The same of a command of the locomotives' own brakes: each vehicle named is a locomotive, its brake gives the
+/// pressure, and a bail-off has cylinders to empty.
+std::vector<BrokenRule> JudgeLocomotiveBrakeCommand(const LocomotiveBrakeCommand& command, const std::string& key,
+                                                    const TrainParams& train, const BrakeSystemParams& brake);
 
 }  // namespace train_dynamics

@@ -36,8 +36,7 @@ class Locomotives {
   /// Moves the drives on by an exchange and sets the loads that they are: empty arrays, where there are no locomotives.
   /// @param middle_s           the middle of the exchange
   /// @param head_velocity_mps  [vehicle] of the coupler heads, at the exchange's start
-  void Advance(double middle_s, double interval_s, const std::vector<double>& head_velocity_mps,
-               LoadArrays& loads);
+  void Advance(double middle_s, double interval_s, const std::vector<double>& head_velocity_mps, LoadArrays& loads);
 
   /// Takes the commands up to the middle of an exchange as obeyed: they are in the state that was restored.
   void PassBy(double middle_s);

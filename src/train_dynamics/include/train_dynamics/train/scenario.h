@@ -73,15 +73,13 @@ struct ScenarioParams {
              "time between records, a multiple of exchange_interval_s");
     v.Number("ledger_interval_s", ledger_interval_s, kPositive,
              "time between energy ledgers, a multiple of record_interval_s");
-    v.Choice("integrator", integrator,
-             {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}},
+    v.Choice("integrator", integrator, {{"leapfrog", LtdIntegrator::kLeapfrog}, {"newmark", LtdIntegrator::kNewmark}},
              "of LTD vehicles");
     v.Flag("adhesion_limit", adhesion_limit,
            "of LTD vehicles: the rail gives at most mu0 W (2D vehicles always have this limit)");
     v.Integers("detail_vehicles", detail_vehicles, Range{-100000, 100000, false, false},
                "vehicles recorded in full detail, from 1, or from -1 for the last");
-    v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s",
-            {"dt_s"});
+    v.Check(Multiple(exchange_interval_s, dt_s), "exchange_interval_s", "must be a multiple of dt_s", {"dt_s"});
     v.Check(Multiple(record_interval_s, exchange_interval_s), "record_interval_s",
             "must be a multiple of exchange_interval_s", {"exchange_interval_s"});
     v.Check(Multiple(ledger_interval_s, record_interval_s), "ledger_interval_s",

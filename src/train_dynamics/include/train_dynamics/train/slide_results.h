@@ -24,8 +24,7 @@ struct WheelsetSlides {
 struct TrackWork {
   long from_m = 0;              ///< the first entry is of [from_m, from_m + 1)
   std::vector<double> creep_j;  ///< lost in creep: the sum of T-gamma |F s| [N] per metre
-  std::vector<double>
-      brake_j;  ///< of the longitudinal force on the rail, braking positive: the sum of forces [N]
+  std::vector<double> brake_j;  ///< of the longitudinal force on the rail, braking positive: the sum of forces [N]
 };
 
 /// Collects slides and the work on the track from a run's records as they pass.

@@ -14,9 +14,9 @@ namespace train_dynamics {
 /// The cores that this process may use, at least 1: those of the machine, or fewer (taskset, a batch system).
 int UsableCores();
 
-/// A fixed team of threads that runs the same task side by side, thousands of times a second; or, where that takes longer
-/// because the machine has other work, one after the other in the calling thread (see FasterWay). What a thread has not begun
-/// when the caller is done with its own part, because it waits for a core, the caller does, too.
+/// A fixed team of threads that runs the same task side by side, thousands of times a second; or, where that takes
+/// longer because the machine has other work, one after the other in the calling thread (see FasterWay). What a thread
+/// has not begun when the caller is done with its own part, because it waits for a core, the caller does, too.
 ///
 /// Waiting spins for as long as it takes to wake a thread, then sleeps, so that neither a busy train nor an idle one
 /// wastes a core.

@@ -27,8 +27,7 @@ struct TrainRecord {
   double mean_speed_mps = 0.0;   ///< of the vehicles' momentum
   double mean_position_m = 0.0;  ///< of the vehicles' masses
   VehicleRecords vehicles;
-  std::vector<SlideEvent>
-      slides;  ///< that have ended since the last record; with a ledger, those that go on, too
+  std::vector<SlideEvent> slides;  ///< that have ended since the last record; with a ledger, those that go on, too
   std::vector<double> acceleration_mps2;     ///< [vehicle] mean over the record interval; NaN at time 0
   LoadArrays held;                           ///< the loads of the interval that ended
   std::vector<double> coupler_extension_m;   ///< [connection]
@@ -36,7 +35,8 @@ struct TrainRecord {
   BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
   std::optional<EnergyLedger> ledger;        ///< where one is due
-  /// ExchangeReply::wheelset_work_j, while the record is shown: copies of it are for recorders, which have no use for that.
+  /// ExchangeReply::wheelset_work_j, while the record is shown: copies of it are for recorders, which have no use for
+  /// that.
   const std::vector<double>* wheelset_work_j = nullptr;
   std::vector<GivenCommand> given;  ///< since the record before
   TimeZero at_time_zero;            ///< of the run, also where it was resumed later
@@ -50,8 +50,7 @@ class TrainMaster {
   using Observer = std::function<void(const TrainRecord&)>;
 
   /// Keeps references: scenario, consist and transport must outlive the master.
-  TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport,
-              BrakeSystem brake);
+  TrainMaster(const ScenarioParams& scenario, const Consist& consist, Transport& transport, BrakeSystem brake);
 
   /// Called for every record, the one at time 0 included.
   void AddObserver(Observer observer) { observers_.push_back(std::move(observer)); }

@@ -35,13 +35,13 @@ class VehicleBlock {
   virtual VehicleFault FindFault() const = 0;
 };
 
-/// The most numbers that the state of a vehicle of this program can have, but for slides that have ended and are not told
-/// yet: of those, kSharedSlidesPerWheelset of each wheelset.
+/// The most numbers that the state of a vehicle of this program can have, but for slides that have ended and are not
+/// told yet: of those, kSharedSlidesPerWheelset of each wheelset.
 int MostStateNumbers();
 
-/// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model. External ones
-/// are left out: their places in replies and rows stay as they are.
-std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist,
-                                               int first, int count);
+/// Builds the vehicles [first, first + count) of a scenario's train at their start state, each of its group's model.
+/// External ones are left out: their places in replies and rows stay as they are.
+std::unique_ptr<VehicleBlock> MakeVehicleBlock(const ScenarioParams& scenario, const Consist& consist, int first,
+                                               int count);
 
 }  // namespace train_dynamics

@@ -10,8 +10,8 @@
 
 namespace train_dynamics {
 
-/// Slip control of the locomotives of a batch: between the traction that the master sends and the driven wheelsets. Runs
-/// vehicle by vehicle, before each step.
+/// Slip control of the locomotives of a batch: between the traction that the master sends and the driven wheelsets.
+/// Runs vehicle by vehicle, before each step.
 template <class Vehicle>
 class BatchSlipControl {
  public:
@@ -25,8 +25,7 @@ class BatchSlipControl {
         steps_per_sample_(std::lround(params.sampling_period_s / dt)),
         lanes_(batch.lanes()),
         states_(batch.size()),
-        share_((static_cast<std::size_t>(batch.size() + lanes_ - 1) / lanes_) * lanes_ * kMostWheelsets,
-               1.0) {}
+        share_((static_cast<std::size_t>(batch.size() + lanes_ - 1) / lanes_) * lanes_ * kMostWheelsets, 1.0) {}
 
   /// Samples at the start of the step that comes.
   /// @param step  counted from the start of the run

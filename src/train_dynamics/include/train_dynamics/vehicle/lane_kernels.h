@@ -22,8 +22,7 @@ struct LaneKernels {
   /// @return whether all lanes are sound
   template <class Vehicle>
   using StepPacks = bool (*)(const Vehicle& vehicle, const Track& track, double dt, int steps, int packs,
-                             const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states,
-                             std::byte* outputs);
+                             const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs);
 
   /// What a pack replies, and what a record holds of it.
   template <class Vehicle>
@@ -43,8 +42,8 @@ struct LaneKernels {
 /// The kernels that were built and that this machine can run, fastest first. All give the same bits.
 const std::vector<LaneKernels>& AllLaneKernels();
 
-/// The fastest for that many vehicles of one type: those of the widest lanes, but no wider than the vehicles fill. A process
-/// with one vehicle would else compute, and hold in its cache, lanes that are never read.
+/// The fastest for that many vehicles of one type: those of the widest lanes, but no wider than the vehicles fill. A
+/// process with one vehicle would else compute, and hold in its cache, lanes that are never read.
 const LaneKernels& BestLaneKernels(int vehicles);
 
 }  // namespace train_dynamics

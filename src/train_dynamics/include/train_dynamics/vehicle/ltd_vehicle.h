@@ -31,8 +31,8 @@ inline double EquivalentRotationalMass(const VehicleParams& p) {
 /// step apart.
 enum class LtdIntegrator {
   kLeapfrog,  ///< half drift, kick, half drift: forces at the middle of the step
-  kNewmark,  ///< the paper's explicit Newmark method, beta = 0, gamma = 1/2: forces at the start of the step;
-             ///< `v_mps` is its predicted velocity, i.e. that of half a step earlier
+  kNewmark,   ///< the paper's explicit Newmark method, beta = 0, gamma = 1/2: forces at the start of the step;
+              ///< `v_mps` is its predicted velocity, i.e. that of half a step earlier
 };
 
 template <class T>
@@ -56,8 +56,8 @@ struct LtdOutput {
 /// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
 struct LtdVehicle {
   /// @throws std::invalid_argument when the parameters violate their rules
-  LtdVehicle(const VehicleParams& params, bool with_rotational_inertia,
-             LtdIntegrator method = LtdIntegrator::kLeapfrog, bool knows_adhesion_limit = false);
+  LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method = LtdIntegrator::kLeapfrog,
+             bool knows_adhesion_limit = false);
 
   template <class T>
   using State = LtdState<T>;
@@ -82,15 +82,15 @@ struct LtdVehicle {
 ///   v*      = v + dt (F_front - F_rear + F_t - W grade(x)) / M
 ///   v_(n+1) = sgn(v*) max(|v*| - dt (F_ab + F_db + R + F_cr) / M, 0)
 ///
-/// With `adhesion_limit` the forces at the wheels' rims, F_ab + F_db + R + F_cr together and F_t, are at most mu0(x) W M / m
-/// each, so that the rail gives at most mu0(x) W: nothing slides in this model, hence no falling friction.
+/// With `adhesion_limit` the forces at the wheels' rims, F_ab + F_db + R + F_cr together and F_t, are at most mu0(x) W
+/// M / m each, so that the rail gives at most mu0(x) W: nothing slides in this model, hence no falling friction.
 ///
 /// Brakes and resistance are set-valued at rest: the projection holds a standing vehicle exactly, on any
 /// grade that the brakes can hold. Their sizes are taken at the speed of the step's start.
 /// @param output  receives what the step shows; may be null
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
-             LtdState<T>& s, LtdOutput<T>* output = nullptr);
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt, LtdState<T>& s,
+             LtdOutput<T>* output = nullptr);
 
 /// Whether a vehicle on a track has only what most have: shoes of plain rigging, no limit of adhesion, one grade.
 inline bool IsPlain(const LtdVehicle& vehicle, const Track& track) {
@@ -98,8 +98,8 @@ inline bool IsPlain(const LtdVehicle& vehicle, const Track& track) {
 }
 /// StepLtd, of which kAll = false leaves out what plain vehicles do not have, at the same bits.
 template <bool kAll, class T>
-void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
-                 LtdState<T>& s, LtdOutput<T>* output);
+void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt, LtdState<T>& s,
+                 LtdOutput<T>* output);
 
 /// Displacement of the coupler heads since the start [m]: the vehicle's own, which is rigid.
 template <class T>
@@ -136,14 +136,14 @@ T KineticEnergy(const LtdVehicle& vehicle, const LtdState<T>& s) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <class T>
-void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
-             LtdState<T>& s, LtdOutput<T>* output) {
+void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt, LtdState<T>& s,
+             LtdOutput<T>* output) {
   StepLtdWith<true>(vehicle, track, loads, dt, s, output);
 }
 
 template <bool kAll, class T>
-void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt,
-                 LtdState<T>& s, LtdOutput<T>* output) {
+void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt, LtdState<T>& s,
+                 LtdOutput<T>* output) {
   const T v0 = s.v_mps;
   const double drift = vehicle.integrator == LtdIntegrator::kLeapfrog ? 0.5 * dt : 0.0;
   s.x_m = s.x_m + drift * v0;
@@ -154,9 +154,9 @@ void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoa
                  : PlainShoeForce(vehicle.brake_rigging, loads.cylinder_pressure_pa, v0);
   T rolling = RollingResistance(vehicle.propulsion_resistance, vehicle.weight_n, v0);
   if (kAll && vehicle.brake_rigging.params.shoe_friction.icy) {
-    shoes = IcyFactor(*vehicle.brake_rigging.params.shoe_friction.icy,
-                      vehicle.per_wheel * s.work.dissipated[kBrakeShoes]) *
-            shoes;
+    shoes =
+        IcyFactor(*vehicle.brake_rigging.params.shoe_friction.icy, vehicle.per_wheel * s.work.dissipated[kBrakeShoes]) *
+        shoes;
   }
   if (kAll) rolling = Max(rolling, loads.breakaway_resistance_n);
   T dynamic_brake = loads.dynamic_brake_n, traction = loads.traction_n;
@@ -178,9 +178,8 @@ void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoa
   s.v_mps = v1;
   s.x_m = s.x_m + (dt - drift) * v1;
 
-  const T path = 0.5 * dt * (v0 + v1);  // force x path = exact change of kinetic energy
-  T mobilised =
-      CopySign(T(1.0), free);  // -1 ... 1: the part of the retarding forces that acts, against `free`
+  const T path = 0.5 * dt * (v0 + v1);   // force x path = exact change of kinetic energy
+  T mobilised = CopySign(T(1.0), free);  // -1 ... 1: the part of the retarding forces that acts, against `free`
   const MaskOf<T> comes_to_rest = v1 == T(0.0);
   if (AnyOf(comes_to_rest)) {
     mobilised = Select(comes_to_rest, free / Max(T(1e-300), per_inertia * retarding), mobilised);

@@ -26,8 +26,8 @@
 
 namespace train_dynamics {
 
-/// When a wheelset slides, and when it is locked. Both count above kSlowest only: near standstill the ratio of two small
-/// speeds says nothing.
+/// When a wheelset slides, and when it is locked. Both count above kSlowest only: near standstill the ratio of two
+/// small speeds says nothing.
 namespace slide {
 inline constexpr double kCreepage = 0.3;       ///< beyond it a wheelset slides ...
 inline constexpr double kLeastDuration = 0.2;  ///< ... if it does for so long [s]

@@ -34,9 +34,7 @@ class SlideWatch {
   /// @return whether they were such numbers
   bool Restore(int i, const double* numbers, std::size_t count);
 
-  static constexpr int kSharedNumbers() {
-    return kWheelsets * (kFollowed + kSharedSlidesPerWheelset * kSlideNumbers);
-  }
+  static constexpr int kSharedNumbers() { return kWheelsets * (kFollowed + kSharedSlidesPerWheelset * kSlideNumbers); }
 
  private:
   /// A wheelset. A row of numbers.
@@ -45,8 +43,7 @@ class SlideWatch {
     double start_s = 0.0, start_m = 0.0, start_way_m = 0.0, start_turn_m = 0.0, start_creep_j = 0.0;
     double lock_s = 0.0, lock_from_s = 0.0, lock_way_m = 0.0,
            lock_creep_j = 0.0;  ///< of the present lock: its length, where it began
-    double locked_s = 0.0, locked_m = 0.0, longest_lock_s = 0.0, longest_lock_from_s = 0.0,
-           largest_lock_j = 0.0;
+    double locked_s = 0.0, locked_m = 0.0, longest_lock_s = 0.0, longest_lock_from_s = 0.0, largest_lock_j = 0.0;
     double largest_adhesion = 0.0, largest_creepage = 0.0;
   };
   static constexpr int kFollowed = sizeof(Followed) / sizeof(double);

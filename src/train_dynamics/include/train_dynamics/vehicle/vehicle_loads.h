@@ -86,13 +86,13 @@ void ForEachLoad(Function&& function, Structs&... structs) {
 template <class Arrays>
 void ResizeLoads(std::size_t vehicles, bool with_all, Arrays& arrays) {
   arrays.coupler_force_n.resize(vehicles + 1);
-  ForEachLoad([=](const LoadInfo& load,
-                  auto& array) { array.resize(with_all || load.given == Given::kAlways ? vehicles : 0); },
-              arrays);
+  ForEachLoad(
+      [=](const LoadInfo& load, auto& array) { array.resize(with_all || load.given == Given::kAlways ? vehicles : 0); },
+      arrays);
 }
 
-/// Copies the loads on the vehicles [first, first + count) to the arrays of a struct or message; those that are not used
-/// become empty.
+/// Copies the loads on the vehicles [first, first + count) to the arrays of a struct or message; those that are not
+/// used become empty.
 template <class From, class To>
 void CopyLoads(const From& from, std::size_t first, std::size_t count, To& to) {
   const auto copy = [](const auto& whole, std::size_t begin, std::size_t numbers, auto& part) {
@@ -109,8 +109,7 @@ void CopyLoads(const From& from, std::size_t first, std::size_t count, To& to) {
 template <class A, class B>
 bool AreSameLoads(const A& a, const B& b) {
   bool same = a.coupler_force_n == b.coupler_force_n;
-  ForEachLoad([&same](const LoadInfo&, const auto& one, const auto& other) { same = same && one == other; },
-              a, b);
+  ForEachLoad([&same](const LoadInfo&, const auto& one, const auto& other) { same = same && one == other; }, a, b);
   return same;
 }
 
@@ -119,9 +118,9 @@ inline LoadPlaces PlacesOf(const LoadArrays& arrays, std::size_t at) {
   LoadPlaces places;
   places.front_coupler_n = arrays.coupler_force_n.data() + at;
   places.rear_coupler_n = arrays.coupler_force_n.data() + at + 1;
-  ForEachLoad([at](const LoadInfo&, const auto& array,
-                   auto& place) { place = array.empty() ? nullptr : array.data() + at; },
-              arrays, places);
+  ForEachLoad(
+      [at](const LoadInfo&, const auto& array, auto& place) { place = array.empty() ? nullptr : array.data() + at; },
+      arrays, places);
   return places;
 }
 

@@ -30,10 +30,8 @@ struct BodyParams {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Number("mass_kg", mass_kg, kPositive, "mass of the body");
-    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive,
-             "pitch inertia about its centre of gravity");
-    v.Number("cg_height_m", cg_height_m, kPositive,
-             "height of its centre of gravity above rail, at rest without load");
+    v.Number("pitch_inertia_kgm2", pitch_inertia_kgm2, kPositive, "pitch inertia about its centre of gravity");
+    v.Number("cg_height_m", cg_height_m, kPositive, "height of its centre of gravity above rail, at rest without load");
   }
 };
 
@@ -131,8 +129,7 @@ struct VehicleParams {
              "mass without load; given: the vehicle is one mass without bodies, for LTD models only");
     v.Group("load", load, "what the vehicle carries when it is full, beside mass_kg or the bodies");
     v.Number("load_fraction", load_fraction, kFraction, "how much of that it carries; not given: all");
-    v.Check(load || !load_fraction, "load_fraction", "needs load: what the vehicle carries when it is full",
-            {"load"});
+    v.Check(load || !load_fraction, "load_fraction", "needs load: what the vehicle carries when it is full", {"load"});
     if (IsOneMass()) {
       v.Integer("axles", axles, Range{1.0, 1000.0, false, false},
                 "number of axles of a vehicle with mass_kg, of all units of an articulated one");
@@ -141,16 +138,14 @@ struct VehicleParams {
     } else {
       VisitBodies(v);
     }
-    v.Group("brake_rigging", brake_rigging,
-            "brake rigging, from cylinder pressure to the shoes' tangential force");
+    v.Group("brake_rigging", brake_rigging, "brake rigging, from cylinder pressure to the shoes' tangential force");
     v.Part("wheel_slide_protection", wheel_slide_protection, "slide_protection",
            "wheel-slide protection (2D model); not given: none");
     v.Group("propulsion_resistance", propulsion_resistance, "resistance of straight level track");
     v.Group("curving_resistance", curving_resistance, "resistance of curves");
     v.Part("traction", traction, "traction", "traction equipment; given: the vehicle is a locomotive");
-    v.Check(
-        !traction || traction->driven_wheelsets.empty() || traction->driven_wheelsets.back() <= Wheelsets(),
-        "traction.driven_wheelsets", "must name wheelsets that the vehicle has", {"traction"});
+    v.Check(!traction || traction->driven_wheelsets.empty() || traction->driven_wheelsets.back() <= Wheelsets(),
+            "traction.driven_wheelsets", "must name wheelsets that the vehicle has", {"traction"});
   }
 
   bool IsOneMass() const { return mass_kg.has_value(); }
@@ -175,18 +170,14 @@ struct VehicleParams {
   /// Mass of the whole vehicle [kg].
   double TotalMass() const {
     if (IsOneMass()) return *mass_kg + LoadMass();
-    return LoadedCarbody().mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) +
-           2.0 * bogie_frame.mass_kg + Wheelsets() * wheelset.mass_kg;
+    return LoadedCarbody().mass_kg + 2.0 * (bolster.mass_kg + 4.0 * wedge_mass_kg) + 2.0 * bogie_frame.mass_kg +
+           Wheelsets() * wheelset.mass_kg;
   }
   double Weight() const { return kGravity * TotalMass(); }  ///< [N]
   BrakeRigging Rigging() const { return {brake_rigging, TotalMass(), Weight()}; }
-  ResistanceCoefficients Resistance() const {
-    return CoefficientsOf(propulsion_resistance, TotalMass(), Wheelsets());
-  }
+  ResistanceCoefficients Resistance() const { return CoefficientsOf(propulsion_resistance, TotalMass(), Wheelsets()); }
   /// On the driven wheels [N].
-  double DrivenWeight() const {
-    return traction ? Weight() * traction->DrivenOf(Wheelsets()) / Wheelsets() : 0.0;
-  }
+  double DrivenWeight() const { return traction ? Weight() * traction->DrivenOf(Wheelsets()) / Wheelsets() : 0.0; }
   /// Pitch inertia of a wheelset with what its drive adds [kg m^2]. @param i  from 0
   double PitchInertia(int i) const {
     const bool driven = traction && traction->Drives(i);

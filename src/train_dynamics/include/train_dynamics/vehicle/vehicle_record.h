@@ -82,38 +82,36 @@ void ForEachRecordField(Function&& function, Structs&... structs) {
 #undef TRAIN_DYNAMICS_CALL
 #define TRAIN_DYNAMICS_PLUS(name, numbers, unit, presence, meaning) +numbers
 
-inline constexpr int kReplyNumbers =
-    0 TRAIN_DYNAMICS_VEHICLE_REPLY(TRAIN_DYNAMICS_PLUS);  ///< of each vehicle
-inline constexpr int kRecordNumbers =
-    0 TRAIN_DYNAMICS_VEHICLE_RECORD(TRAIN_DYNAMICS_PLUS);  ///< of each vehicle
+inline constexpr int kReplyNumbers = 0 TRAIN_DYNAMICS_VEHICLE_REPLY(TRAIN_DYNAMICS_PLUS);    ///< of each vehicle
+inline constexpr int kRecordNumbers = 0 TRAIN_DYNAMICS_VEHICLE_RECORD(TRAIN_DYNAMICS_PLUS);  ///< of each vehicle
 
 #undef TRAIN_DYNAMICS_PLUS
 
 /// Gives the arrays of that name in a struct or message their sizes for so many vehicles.
 template <class Arrays>
 void ResizeReply(std::size_t vehicles, Arrays& arrays) {
-  ForEachReplyField(
-      [vehicles](const RecordInfo& field, auto& array) { array.resize(vehicles * field.numbers); }, arrays);
+  ForEachReplyField([vehicles](const RecordInfo& field, auto& array) { array.resize(vehicles * field.numbers); },
+                    arrays);
 }
 template <class Arrays>
 void ResizeRecord(std::size_t vehicles, Arrays& arrays) {
-  ForEachRecordField(
-      [vehicles](const RecordInfo& field, auto& array) { array.resize(vehicles * field.numbers); }, arrays);
+  ForEachRecordField([vehicles](const RecordInfo& field, auto& array) { array.resize(vehicles * field.numbers); },
+                     arrays);
 }
 
 /// The places of vehicle `at`.
 inline ReplyPlaces PlacesOf(ReplyArrays& arrays, std::size_t at) {
   ReplyPlaces places;
   ForEachReplyField(
-      [at](const RecordInfo& field, auto& array, auto& place) { place = array.data() + at * field.numbers; },
-      arrays, places);
+      [at](const RecordInfo& field, auto& array, auto& place) { place = array.data() + at * field.numbers; }, arrays,
+      places);
   return places;
 }
 inline RecordPlaces PlacesOf(RecordArrays& arrays, std::size_t at) {
   RecordPlaces places;
   ForEachRecordField(
-      [at](const RecordInfo& field, auto& array, auto& place) { place = array.data() + at * field.numbers; },
-      arrays, places);
+      [at](const RecordInfo& field, auto& array, auto& place) { place = array.data() + at * field.numbers; }, arrays,
+      places);
   return places;
 }
 

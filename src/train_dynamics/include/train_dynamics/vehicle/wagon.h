@@ -97,10 +97,10 @@ static_assert(offsetof(WagonState<double>, position) == sizeof(double) &&
 template <class T, int kPerBogie = 2>
 struct WagonOutput {
   using PerWheelset = std::array<T, kWheelsetsOf<kPerBogie>>;
-  PerWheelset normal_force_n{};  ///< of both wheels
-  PerWheelset creepage{};        ///< (v - omega r) / sqrt(v^2 + v0^2)
-  PerWheelset creep_force_n{};   ///< of both wheels, backwards positive
-  PerWheelset shoe_force_n{};    ///< tangential, at the tread, backwards positive while turning
+  PerWheelset normal_force_n{};                 ///< of both wheels
+  PerWheelset creepage{};                       ///< (v - omega r) / sqrt(v^2 + v0^2)
+  PerWheelset creep_force_n{};                  ///< of both wheels, backwards positive
+  PerWheelset shoe_force_n{};                   ///< tangential, at the tread, backwards positive while turning
   std::array<T, kQuarters> wedge_friction_n{};  ///< of the left and right wedge together, up on the bolster
 };
 
@@ -158,9 +158,7 @@ struct BogieVehicle {
   double driven_share;                    ///< of one of them in traction and dynamic brake
 
   /// Whether no nest has a damper, no wheelset a drive, and the shoes are plain, as in the paper's wagon.
-  bool IsPlain() const {
-    return params.spring_nest.damping_ns_per_m == 0.0 && !params.traction && rigging.is_plain;
-  }
+  bool IsPlain() const { return params.spring_nest.damping_ns_per_m == 0.0 && !params.traction && rigging.is_plain; }
 };
 
 using Wagon = BogieVehicle<2>;
@@ -195,14 +193,13 @@ ElementVector<T, kPerBogie> ElementsOf(const BogieVehicle<kPerBogie>& w, const B
     const T turn = q.pitch[frame] - q.pitch[bolster];
     e.nest[i] = lift - w.nest_offset_m[i] * turn;
     e.wedge[i] = lift - w.wedge_offset_m[i] * turn;
-    e.rim[i] =
-        (q.z[bolster] - w.rim_offset_m[i] * q.pitch[bolster]) -
-        (q.z[kCarbody] - (w.bogie_offset_m[BogieOfQuarter(i)] + w.rim_offset_m[i]) * q.pitch[kCarbody]);
+    e.rim[i] = (q.z[bolster] - w.rim_offset_m[i] * q.pitch[bolster]) -
+               (q.z[kCarbody] - (w.bogie_offset_m[BogieOfQuarter(i)] + w.rim_offset_m[i]) * q.pitch[kCarbody]);
   }
   for (int b = 0; b < kBogies; ++b) {
     const int frame = kFrontFrame + b, bolster = kFrontBolster + b;
-    e.guide_x[b] = (q.x[bolster] + w.guide_bolster_arm_m * q.pitch[bolster]) -
-                   (q.x[frame] + w.guide_frame_arm_m * q.pitch[frame]);
+    e.guide_x[b] =
+        (q.x[bolster] + w.guide_bolster_arm_m * q.pitch[bolster]) - (q.x[frame] + w.guide_frame_arm_m * q.pitch[frame]);
     e.plate_x[b] = (q.x[kCarbody] + w.plate_carbody_arm_m * q.pitch[kCarbody]) -
                    (q.x[bolster] + w.plate_bolster_arm_m * q.pitch[bolster]);
   }
@@ -232,14 +229,13 @@ void AddElementForces(const BogieVehicle<kPerBogie>& w, const ElementVector<T, k
     f.z[bolster] = f.z[bolster] + (apart - force.rim[i]);
     f.pitch[bolster] = f.pitch[bolster] + (w.rim_offset_m[i] * force.rim[i] - moment);
     f.z[kCarbody] = f.z[kCarbody] + force.rim[i];
-    f.pitch[kCarbody] =
-        f.pitch[kCarbody] - (w.bogie_offset_m[BogieOfQuarter(i)] + w.rim_offset_m[i]) * force.rim[i];
+    f.pitch[kCarbody] = f.pitch[kCarbody] - (w.bogie_offset_m[BogieOfQuarter(i)] + w.rim_offset_m[i]) * force.rim[i];
   }
   for (int b = 0; b < kBogies; ++b) {
     const int frame = kFrontFrame + b, bolster = kFrontBolster + b;
     f.x[bolster] = f.x[bolster] + (force.plate_x[b] - force.guide_x[b]);
-    f.pitch[bolster] = f.pitch[bolster] +
-                       (w.plate_bolster_arm_m * force.plate_x[b] - w.guide_bolster_arm_m * force.guide_x[b]);
+    f.pitch[bolster] =
+        f.pitch[bolster] + (w.plate_bolster_arm_m * force.plate_x[b] - w.guide_bolster_arm_m * force.guide_x[b]);
     f.x[frame] = f.x[frame] + force.guide_x[b];
     f.pitch[frame] = f.pitch[frame] + w.guide_frame_arm_m * force.guide_x[b];
     f.x[kCarbody] = f.x[kCarbody] - force.plate_x[b];
@@ -262,8 +258,7 @@ ElementVector<T, kPerBogie> ElasticForces(const BogieVehicle<kPerBogie>& w,
     force.rim[i] = RimForce(p.centre_plate, deflection.rim[i], T(0.0));
   }
   for (int i = 0; i < kQuarters; ++i) {
-    force.wedge[i] =
-        (2.0 * w.wedge.kappa) * WedgeSpringForce(w.wedge.params, w.wedge.kappa * deflection.wedge[i]);
+    force.wedge[i] = (2.0 * w.wedge.kappa) * WedgeSpringForce(w.wedge.params, w.wedge.kappa * deflection.wedge[i]);
   }
   for (int b = 0; b < kBogies; ++b) {
     force.guide_x[b] = p.bolster_guide.stiffness_n_per_m * deflection.guide_x[b];
@@ -345,8 +340,8 @@ struct OverRail {
 };
 
 /// The rail under a wheelset is at its wheels; the rail under a bogie (its bolster and frame) is the line between those
-/// under its outer wheelsets, the rail under the carbody the line between the middles of those under its bogies. A pitch
-/// counts from the pitch of that line; that of a wheelset is its rotation and counts from nowhere.
+/// under its outer wheelsets, the rail under the carbody the line between the middles of those under its bogies. A
+/// pitch counts from the pitch of that line; that of a wheelset is its rotation and counts from nowhere.
 template <class T, int kPerBogie>
 OverRail<T, kPerBogie> OverRailOf(const BogieVehicle<kPerBogie>& w, const Track& track,
                                   const WagonState<T, kPerBogie>& s) {

@@ -10,18 +10,17 @@ namespace train_dynamics {
 /// One natural mode of the linearised wagon.
 template <int kPerBogie = 2>
 struct WagonMode {
-  double frequency_hz;                  ///< |lambda| / (2 pi)
-  double damping_ratio;                 ///< -Re(lambda) / |lambda|; 1 and more: creeps back without swinging
-  BodyVector<double, kPerBogie> shape;  ///< real part, largest component 1 (metres and radians alike)
-  BodyVector<double, kPerBogie>
-      energy_share;  ///< share of each motion in the mode's kinetic energy, adding up to 1
+  double frequency_hz;                         ///< |lambda| / (2 pi)
+  double damping_ratio;                        ///< -Re(lambda) / |lambda|; 1 and more: creeps back without swinging
+  BodyVector<double, kPerBogie> shape;         ///< real part, largest component 1 (metres and radians alike)
+  BodyVector<double, kPerBogie> energy_share;  ///< share of each motion in the mode's kinetic energy, adding up to 1
 };
 
 /// The wagon linearised about its static equilibrium.
 template <int kPerBogie = 2>
 struct WagonModes {
   std::vector<WagonMode<kPerBogie>> modes;  ///< by rising frequency, rigid-body motions left out
-  int rigid_body_modes;  ///< motions without a restoring force: forward travel and the wheels' rotation
+  int rigid_body_modes;          ///< motions without a restoring force: forward travel and the wheels' rotation
   double largest_stable_step_s;  ///< beyond it the explicit part of the time step diverges
 };
 

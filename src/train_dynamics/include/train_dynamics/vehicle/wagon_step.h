@@ -23,13 +23,13 @@ namespace train_dynamics {
 ///
 /// @param output  receives the step's contact and friction forces; may be null
 template <class T, int kPerBogie>
-void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads,
-               double dt, WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
+void StepWagon(const BogieVehicle<kPerBogie>& wagon, const Track& track, const VehicleLoads<T>& loads, double dt,
+               WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output);
 
 /// The same, compiled for a kind of vehicle and rail.
-/// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) do not have, the loads that few trains have
-///               (Given::kWhereUsed), and the look-up of dips and surfaces; without these the bits are the same and the
-///               time is less
+/// @tparam kAll  false: leaves out what plain vehicles (BogieVehicle::IsPlain) do not have, the loads that few trains
+///               have (Given::kWhereUsed), and the look-up of dips and surfaces; without these the bits are the same
+///               and the time is less
 /// @tparam kReacts  whether torques on wheelsets may react on the vehicle (BrakeReaction)
 /// @param surface  the one under all wheels, which is on no dip, see FindOneSurface; of kAll = false
 template <bool kAll, bool kReacts, class T, int kPerBogie>
@@ -71,8 +71,8 @@ T WheelsetPosition(const BogieVehicle<kPerBogie>& w, const T& origin_m, const T&
 }
 
 template <class T, int kPerBogie>
-bool FindOneSurface(const BogieVehicle<kPerBogie>& w, const Track& track, double dt,
-                    const WagonState<T, kPerBogie>& s, OneSurface& surface) {
+bool FindOneSurface(const BogieVehicle<kPerBogie>& w, const Track& track, double dt, const WagonState<T, kPerBogie>& s,
+                    OneSurface& surface) {
   Stretch under{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
@@ -93,8 +93,8 @@ bool FindOneSurface(const BogieVehicle<kPerBogie>& w, const Track& track, double
 
 /// kAll and surface: see StepWagonWith.
 template <bool kAll, class T, int kPerBogie>
-RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track,
-                                       const OneSurface& surface, const WagonState<T, kPerBogie>& s) {
+RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const Track& track, const OneSurface& surface,
+                                       const WagonState<T, kPerBogie>& s) {
   const NormalContactParams& contact = w.params.wheel_rail.normal;
   RailForces<T, kPerBogie> rail;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -108,8 +108,7 @@ RailForces<T, kPerBogie> ContactForces(const BogieVehicle<kPerBogie>& w, const T
     }
     const T penetration = point.height - s.position.z[b];
     const T rate = point.slope * s.velocity.x[b] - s.velocity.z[b];
-    rail.normal[i] =
-        2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
+    rail.normal[i] = 2.0 * OneSidedForce(contact.stiffness_n_per_m, contact.damping_ns_per_m, penetration, rate);
     rail.damping[i] = rail.normal[i] - 2.0 * OneSidedForce(contact.stiffness_n_per_m, 0.0, penetration, rate);
     rail.slope[i] = point.slope;
   }
@@ -149,8 +148,7 @@ std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
     WedgeFrictionBounds<T> bounds[2];
     for (int end = 0; end < 2; ++end) {
       const T travel = w.wedge.kappa * deflection[2 * bogie + end];
-      bounds[end] =
-          WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.wedge.params, travel), rate[2 * bogie + end]);
+      bounds[end] = WedgeFriction(w.wedge, 2.0 * WedgeSpringForce(w.wedge.params, travel), rate[2 * bogie + end]);
     }
     const T c0 = free_rate[2 * bogie], c1 = free_rate[2 * bogie + 1];
     T f0(0.0), f1(0.0);
@@ -164,11 +162,11 @@ std::array<T, kQuarters> WedgeFrictionForces(const BogieVehicle<kPerBogie>& w,
   return f;
 }
 
-/// Velocities `v1` of the bodies [begin, end) after the forces have acted for dt on bodies of velocities `v0`. Both may be
-/// the same.
+/// Velocities `v1` of the bodies [begin, end) after the forces have acted for dt on bodies of velocities `v0`. Both may
+/// be the same.
 template <class T, int kPerBogie>
-void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& force, double dt, int begin,
-          int end, const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1) {
+void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& force, double dt, int begin, int end,
+          const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1) {
   for (int i = begin; i < end; ++i) {
     v1.x[i] = v0.x[i] + (dt * w.inv_mass_per_kg[i]) * force.x[i];
     v1.z[i] = v0.z[i] + (dt * w.inv_mass_per_kg[i]) * force.z[i];
@@ -195,8 +193,8 @@ struct OuterForces {
 
 /// Outer forces with the carbody at the middle of the step and its speed at the start.
 template <bool kAll, class T, int kPerBogie>
-OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& track,
-                             const VehicleLoads<T>& loads, const WagonState<T, kPerBogie>& s) {
+OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads,
+                             const WagonState<T, kPerBogie>& s) {
   const VehicleParams& p = w.params;
   const T speed = s.velocity.x[kCarbody];
   OuterForces<T> outer;
@@ -217,8 +215,7 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& trac
   outer.cylinder_pressure = loads.cylinder_pressure_pa;
   outer.icy_factor = T(1.0);
   if (kAll && p.brake_rigging.shoe_friction.icy) {
-    outer.icy_factor =
-        IcyFactor(*p.brake_rigging.shoe_friction.icy, 0.5 * kShare * s.work.dissipated[kBrakeShoes]);
+    outer.icy_factor = IcyFactor(*p.brake_rigging.shoe_friction.icy, 0.5 * kShare * s.work.dissipated[kBrakeShoes]);
   }
   outer.wheelset_pressure = loads.wheelset_pressure_pa;
   outer.traction_share = loads.traction_share;
@@ -227,8 +224,7 @@ OuterForces<T> OuterForcesOn(const BogieVehicle<kPerBogie>& w, const Track& trac
 
 /// Adds weight, couplers and drag to the bodies' forces.
 template <class T, int kPerBogie>
-void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
-                    BodyVector<T, kPerBogie>& force) {
+void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer, BodyVector<T, kPerBogie>& force) {
   for (int i = 0; i < kBodiesOf<kPerBogie>; ++i) {
     const double weight = kGravity * w.mass_kg[i];
     force.x[i] = force.x[i] - weight * outer.grade;
@@ -296,7 +292,7 @@ struct WheelsetStep {
   std::array<T, kWheelsetsOf<kPerBogie>> path;          ///< at the tread, of the rotation [m]
   std::array<T, kWheelsetsOf<kPerBogie>> creep, brake;  ///< energy lost in creep; work on the rail [J]
   std::array<T, kWheelsetsOf<kPerBogie>> traction{};    ///< at the tread, forward positive [N]
-  T contact{}, curving{};  ///< energy lost in the contacts' dampers and to curves [J]
+  T contact{}, curving{};                               ///< energy lost in the contacts' dampers and to curves [J]
 };
 
 /// The wheelsets' creep laws, frozen, and their implicit step on them (StepRolling).
@@ -304,8 +300,8 @@ struct WheelsetStep {
 template <class T, int kPerBogie, class Inertia, class ShapeOf>
 std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> RollOn(
     const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
-    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt,
-    const BodyVector<T, kPerBogie>& v0, const Inertia& inertia, const ShapeOf& shape_of) {
+    const std::array<RollingInput<T>, kWheelsetsOf<kPerBogie>>& rolling, double dt, const BodyVector<T, kPerBogie>& v0,
+    const Inertia& inertia, const ShapeOf& shape_of) {
   using Law = decltype(FreezeCreepLaw(shape_of(rail.surface[0]), 0.0, T(), T(), T(), 0.0));
   std::array<Law, kWheelsetsOf<kPerBogie>> law;
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
@@ -330,9 +326,8 @@ template <class T, int kPerBogie>
 /// Velocities of the wheelsets after the step.
 /// @param force  on the wheelsets, without the rail's [N]
 template <bool kAll, class T, int kPerBogie>
-WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
-                                         const RailForces<T, kPerBogie>& rail, const OuterForces<T>& outer,
-                                         const BodyVector<T, kPerBogie>& force, double dt,
+WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w, const RailForces<T, kPerBogie>& rail,
+                                         const OuterForces<T>& outer, const BodyVector<T, kPerBogie>& force, double dt,
                                          const BodyVector<T, kPerBogie>& v0, BodyVector<T, kPerBogie>& v1,
                                          WagonOutput<T, kPerBogie>* output) {
   const WheelRailParams& contact = w.params.wheel_rail;
@@ -365,10 +360,9 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w,
                   v0.x[b] - r * v0.pitch[b]};
   }
   const std::array<RollingResult<T>, kWheelsetsOf<kPerBogie>> rolled =
-      mixed
-          ? RollOnMixed(w, rail, rolling, dt, v0)
-          : RollOn(w, rail, rolling, dt, v0, w.rolling,
-                   [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
+      mixed ? RollOnMixed(w, rail, rolling, dt, v0)
+            : RollOn(w, rail, rolling, dt, v0, w.rolling,
+                     [](const RailSurface<T>& surface) -> const AdhesionParams& { return *surface.adhesion; });
 
   for (int i = 0; i < kWheelsetsOf<kPerBogie>; ++i) {
     const int b = kWheelset1 + i;
@@ -413,8 +407,8 @@ void AddReactions(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
     for (int i = kPerBogie * bogie; i < kPerBogie * (bogie + 1); ++i) {
       shoes = shoes + wheelsets.mobilised[i] * wheelsets.shoes.turning[i];
       if (kAll) {
-        others = others + (wheelsets.mobilised[i] * (outer.rolling + w.driven[i] * outer.dynamic_brake) -
-                           wheelsets.traction[i]);
+        others = others +
+                 (wheelsets.mobilised[i] * (outer.rolling + w.driven[i] * outer.dynamic_brake) - wheelsets.traction[i]);
       } else {
         others = others + wheelsets.mobilised[i] * outer.rolling;
       }
@@ -566,11 +560,9 @@ template <class T, int kPerBogie>
 void StepWagon(const BogieVehicle<kPerBogie>& w, const Track& track, const VehicleLoads<T>& loads, double dt,
                WagonState<T, kPerBogie>& s, WagonOutput<T, kPerBogie>* output) {
   bool has_rare_loads = false;
-  ForEachLoad(
-      [&](const LoadInfo& load, const T& value) {
-        has_rare_loads |= load.given == Given::kWhereUsed && AnyOf(value != T(0.0));
-      },
-      loads);
+  ForEachLoad([&](const LoadInfo& load,
+                  const T& value) { has_rare_loads |= load.given == Given::kWhereUsed && AnyOf(value != T(0.0)); },
+              loads);
   const bool all = !w.IsPlain() || has_rare_loads;
   OneSurface surface;
   const bool looks_up = all || !FindOneSurface(w, track, dt, s, surface);

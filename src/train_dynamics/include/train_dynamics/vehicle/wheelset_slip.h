@@ -14,9 +14,9 @@ struct RollingInput {
   T speed;            ///< v at the end of the step if there were no creep force [m/s]
   T spin;             ///< omega at the start of the step [rad/s]
   T traction_torque;  ///< [Nm], forward positive
-  T brake_torque;    ///< largest torque that brakes and resistance can exert on the turning wheels [Nm], >= 0
-  T holding_torque;  ///< the same on wheels that stand [Nm], >= brake_torque
-  T slip;            ///< w at the start of the step [m/s]: where the search for that at the end begins
+  T brake_torque;     ///< largest torque that brakes and resistance can exert on the turning wheels [Nm], >= 0
+  T holding_torque;   ///< the same on wheels that stand [Nm], >= brake_torque
+  T slip;             ///< w at the start of the step [m/s]: where the search for that at the end begins
 };
 
 /// The rolling motion at the end of the step and what it took.
@@ -68,11 +68,11 @@ MaskOf<T> IsOnTheWay(const T& w, const T& next) {
 ///
 /// F rises from 0 to at most N mu0 and its slope falls: w lies above w0 - h N mu0, and Newton's iterates, whatever the
 /// guess, do not pass it. They climb, held at or above that bound and 0. (With friction that falls over the slip speed
-/// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has arrived when its iterate
-/// moved by less than a thousandth of itself: by Taylor's theorem F is then wrong by w^2 F'' 1e-6 / 2, less than 1e-6 N
-/// mu0, towards too much force (or, where friction falls, by up to 2.7e-7 (1 - A) N mu0 towards too little). From the
-/// slip of the step before, that takes a rolling wheelset one iteration, seldom two. The force returned is (w0 - w) / h:
-/// whatever error is left in w, momentum and energy are exact.
+/// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has arrived when its
+/// iterate moved by less than a thousandth of itself: by Taylor's theorem F is then wrong by w^2 F'' 1e-6 / 2, less
+/// than 1e-6 N mu0, towards too much force (or, where friction falls, by up to 2.7e-7 (1 - A) N mu0 towards too
+/// little). From the slip of the step before, that takes a rolling wheelset one iteration, seldom two. The force
+/// returned is (w0 - w) / h: whatever error is left in w, momentum and energy are exact.
 ///
 /// Several wheelsets are solved side by side, in each lane of T too: an iteration waits for the one before, but not for
 /// those of the others. One that has arrived stays where it is while others go on, so that its result does not depend
@@ -131,14 +131,13 @@ SlipSolution<T> SolveSlip(const CreepLaw<T>& law, T h, T w0, T guess) {
 ///   v1     = v* - dt F(w1) / m
 ///   omega1 = omega + dt (T_t + r F(w1) - T) / J
 ///
-/// T = +-T_max while the wheels turn. Where that would turn them backwards they stop: omega1 = 0, and T is
-/// what holds them, |T| <= T_hold. Shoes whose friction falls over the tread's speed hold more than they brake:
-/// T_hold >= T_max, the friction being that of standstill. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at
-/// 1 ms: hence implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that
-/// the train's speed does not betray.
+/// T = +-T_max while the wheels turn. Where that would turn them backwards they stop: omega1 = 0, and T is what holds
+/// them, |T| <= T_hold. Shoes whose friction falls over the tread's speed hold more than they brake: T_hold >= T_max,
+/// the friction being that of standstill. The creep law is stiff, dt (1/m + r^2/J) F'(0) is 40 (m/s) / v at 1 ms: hence
+/// implicit. Explicit Euler diverges below 20 m/s and lets the force jump to a false branch that the train's speed does
+/// not betray.
 template <class T, std::size_t kCount, class P = double, class Inertia = RollingInertia>
-std::array<RollingResult<T>, kCount> StepRolling(const Inertia& inertia,
-                                                 const std::array<CreepLaw<T, P>, kCount>& law,
+std::array<RollingResult<T>, kCount> StepRolling(const Inertia& inertia, const std::array<CreepLaw<T, P>, kCount>& law,
                                                  const std::array<RollingInput<T>, kCount>& in, double dt) {
   const double r = inertia.radius_m;
   const double h_locked = dt * inertia.inv_mass_per_kg;

@@ -64,8 +64,7 @@ struct VehicleEnergy {
 };
 
 #undef TRAIN_DYNAMICS_VALUE
-#define TRAIN_DYNAMICS_CALL(name, numbers, meaning) \
-  function(FieldInfo{#name, "J", meaning, numbers}, structs.name...);
+#define TRAIN_DYNAMICS_CALL(name, numbers, meaning) function(FieldInfo{#name, "J", meaning, numbers}, structs.name...);
 
 /// Calls function(FieldInfo, field, field ...) for each of a vehicle's energies; as ForEachRecordField.
 template <class Function, class... Structs>
@@ -90,8 +89,7 @@ const double* FirstOf(const std::array<double, n>& numbers) {
 /// Gives the arrays of a message their sizes for so many vehicles.
 template <class Arrays>
 void ResizeEnergies(std::size_t vehicles, Arrays& arrays) {
-  ForEachEnergy([vehicles](const FieldInfo& field, auto& array) { array.resize(vehicles * field.numbers); },
-                arrays);
+  ForEachEnergy([vehicles](const FieldInfo& field, auto& array) { array.resize(vehicles * field.numbers); }, arrays);
 }
 
 /// Between the energies of a vehicle and its place in the arrays of a message.

@@ -30,9 +30,7 @@ class Bench {
     }
     return kNever;
   }
-  void Give(BrakeCommandKind kind, double reduction_kpa = 0.0) {
-    brake.Command({now_s_, kind, reduction_kpa});
-  }
+  void Give(BrakeCommandKind kind, double reduction_kpa = 0.0) { brake.Command({now_s_, kind, reduction_kpa}); }
   int InEmergency() const {
     int count = 0;
     for (int i = 0; i < brake.vehicles(); ++i) count += brake.valve(i).Mode() == ControlValveMode::kEmergency;
@@ -83,12 +81,10 @@ void TestSingleCar(const PneumaticBrakeParams& params, double length_m, Table& t
   car.Give(BrakeCommandKind::kApply, 70.0);
   car.Run(31.0);
   const double applied = car.cylinder_pa[0];
-  table.Add("single car: cylinder 30 s after 70 kPa", applied / 1e3, "kPa", "at least 70 kPa [A]",
-            applied >= 70e3);
+  table.Add("single car: cylinder 30 s after 70 kPa", applied / 1e3, "kPa", "at least 70 kPa [A]", applied >= 70e3);
   car.Run(91.0);
   const double lost = applied - car.cylinder_pa[0];
-  table.Add("single car: cylinder's fall in a minute", lost / 1e3, "kPa", "at most 7 kPa, 1 psi [A]",
-            lost <= 7e3);
+  table.Add("single car: cylinder's fall in a minute", lost / 1e3, "kPa", "at most 7 kPa, 1 psi [A]", lost <= 7e3);
   car.Give(BrakeCommandKind::kRelease);
   table.AddTime("single car: release to 35 kPa",
                 car.Until([](const Bench& b) { return b.cylinder_pa[0] < 35e3; }, 120.0), 60.0);
@@ -96,8 +92,7 @@ void TestSingleCar(const PneumaticBrakeParams& params, double length_m, Table& t
 
 }  // namespace
 
-std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
-                                        const std::vector<double>& length_m) {
+std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params, const std::vector<double>& length_m) {
   Table table;
   const int n = static_cast<int>(length_m.size());
   TestSingleCar(OneVehicle(params, n), length_m[n > 1 ? 1 : 0], table);
@@ -117,18 +112,17 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
 
   train.initial_pressure_kpa = 0.0;
   Bench charging(train, length_m);
-  table.AddTime(
-      "charging: tail at 95 % of the charged pressure",
-      charging.Until([&](const Bench& b) { return b.brake.TailPressure() > 0.95 * charged_pa; }, 3600.0),
-      3600.0);
+  table.AddTime("charging: tail at 95 % of the charged pressure",
+                charging.Until([&](const Bench& b) { return b.brake.TailPressure() > 0.95 * charged_pa; }, 3600.0),
+                3600.0);
 
   train.initial_pressure_kpa.reset();
   Bench leakage(train, length_m);
   leakage.Run(600.0);
   const double flow = leakage.brake.FlowIntoPipe();
   // 60 ft3/min of free air.
-  table.Add("leakage: flow of the driver's valves after 10 min", flow * 1e3, "g/s",
-            "at most 34.1 g/s, 60 CFM [S]", flow <= 34.1e-3);
+  table.Add("leakage: flow of the driver's valves after 10 min", flow * 1e3, "g/s", "at most 34.1 g/s, 60 CFM [S]",
+            flow <= 34.1e-3);
   const double gradient = leakage.brake.HeadPressure() - leakage.brake.TailPressure();
   table.Add("leakage: gradient, head less tail", gradient / 1e3, "kPa", "at most 103 kPa, 15 psi [S]",
             gradient <= 103.4e3);
@@ -142,8 +136,8 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
   // Four minutes have passed since the reduction: a pipe that is empty by then falls no more, but has.
   const double tail_pa = fall.brake.TailPressure();
   const double lost = std::max(before - tail_pa, (charged_pa - 100e3 - tail_pa) / 4.0);
-  table.Add("leakage: tail's fall in a minute of lap", lost / 1e3, "kPa",
-            "at most 34.5 kPa, 5 psi [M: 49 CFR 232.205]", lost <= 5.0 * kPsi);
+  table.Add("leakage: tail's fall in a minute of lap", lost / 1e3, "kPa", "at most 34.5 kPa, 5 psi [M: 49 CFR 232.205]",
+            lost <= 5.0 * kPsi);
 
   Bench service(train, length_m);
   service.Run(1.0);
@@ -158,9 +152,8 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
   service.Give(BrakeCommandKind::kRelease);
   table.AddTime(
       "release: last cylinder below 40 kPa",
-      service.Until(
-          [](const Bench& b) { return *std::max_element(b.cylinder_pa.begin(), b.cylinder_pa.end()) < 40e3; },
-          900.0),
+      service.Until([](const Bench& b) { return *std::max_element(b.cylinder_pa.begin(), b.cylinder_pa.end()) < 40e3; },
+                    900.0),
       300.0);
   table.Add("service and release: valves in emergency", service.InEmergency(), "-", "none [A]",
             service.InEmergency() == 0);
@@ -181,11 +174,10 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
       60.0);
   int reached = 0, acting = 0;
   for (int i = 0; i < n; ++i) acting += acts[i], reached += acts[i] && !std::isnan(arrival[i]);
-  table.Add("emergency: cylinders that fill", reached, "of " + std::to_string(acting), "all",
-            reached == acting);
+  table.Add("emergency: cylinders that fill", reached, "of " + std::to_string(acting), "all", reached == acting);
   const auto& valves = train.ValveOfVehicle(n);
-  const bool pneumatic = std::all_of(valves.begin(), valves.end(),
-                                     [&](int v) { return train.valves[v].kind != ControlValveKind::kEcp; });
+  const bool pneumatic =
+      std::all_of(valves.begin(), valves.end(), [&](int v) { return train.valves[v].kind != ControlValveKind::kEcp; });
   const bool head_only = train.sources.size() == 1;
   // Over the first vehicles the wave builds up, and the closed tail reflects it: a short train tells no speed.
   const int first = std::max(20, n / 4);
@@ -193,9 +185,8 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params,
     double way = 0.0;
     for (int i = first; i < n - 1; ++i) way += 0.5 * (length_m[i] + length_m[i + 1]);
     const double speed = way / (arrival[n - 1] - arrival[first]);
-    const bool direct = std::any_of(valves.begin(), valves.end(), [&](int v) {
-      return train.valves[v].kind == ControlValveKind::kDirectRelease;
-    });
+    const bool direct = std::any_of(valves.begin(), valves.end(),
+                                    [&](int v) { return train.valves[v].kind == ControlValveKind::kDirectRelease; });
     const double least = direct ? 200.0 : 150.0;
     table.Add("emergency: speed of its front along the train", speed, "m/s",
               "at least " + ShortestDecimal(least) + " m/s [A]", speed >= least);

@@ -10,8 +10,8 @@ constexpr double kDischarge = 0.8;                  ///< of every opening [A]
 constexpr double kHighRetainedPa = 20.0 * 6894.76;  ///< [S]
 constexpr double kLowRetainedPa = 10.0 * 6894.76;   ///< [S]
 constexpr double kSlowDirectOpeningM = 1.45e-3;     ///< empties a cylinder in some 86 s [S: the time]
-/// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: a train that is
-/// being charged may fall below it by what its own reservoirs take [A].
+/// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: a train that
+/// is being charged may fall below it by what its own reservoirs take [A].
 constexpr double kEcpArmedAbovePa = 135e3;
 constexpr double kLn10_5 = 2.3513752571634776;
 
@@ -34,9 +34,7 @@ ControlValve::ControlValve(const ControlValveParams& params, double temperature_
       emergency_m3_(params.direct.emergency_reservoir_l * kLitre),
       cylinder_m3_(params.cylinder_l * kLitre) {
   const double rt = kGasConstantOfAir * temperature_k;
-  const auto opening = [&](double mm) {
-    return rt * NozzleConductance(mm * 1e-3, kDischarge, temperature_k);
-  };
+  const auto opening = [&](double mm) { return rt * NozzleConductance(mm * 1e-3, kDischarge, temperature_k); };
   charging_ = opening(params.charging_opening_mm);
   application_ = opening(params.application_opening_mm);
   exhaust_ = opening(params.exhaust_opening_mm);
@@ -49,15 +47,13 @@ ControlValve::ControlValve(const ControlValveParams& params, double temperature_
   const bool direct = params.kind == ControlValveKind::kDirectRelease;
   quick_service_m3_ =
       kLitre * (direct ? params.direct.quick_service_volume_l : params.graduated.quick_service_volume_l);
-  chamber_share_ =
-      1.0 - Exp(-dt_s / (direct ? params.direct.quick_action_time_s : params.graduated.control_time_s));
+  chamber_share_ = 1.0 - Exp(-dt_s / (direct ? params.direct.quick_action_time_s : params.graduated.control_time_s));
   leak_pa_ = params.cylinder_leakage_kpa_per_min * 1e3 / 60.0 * dt_s;
   const bool ecp = params.kind == ControlValveKind::kEcp;
   fill_per_s_ = kLn10_5 / (ecp ? params.ecp.fill_time_s : params.graduated.fill_time_s);
   emergency_fill_per_s_ = kLn10_5 / params.ecp.emergency_fill_time_s;
   const double maximum_kpa = ecp ? params.ecp.maximum_cylinder_kpa : params.graduated.maximum_cylinder_kpa;
-  release_per_s_ =
-      Log(0.95 * maximum_kpa / 40.0) / (ecp ? params.ecp.release_time_s : params.graduated.release_time_s);
+  release_per_s_ = Log(0.95 * maximum_kpa / 40.0) / (ecp ? params.ecp.release_time_s : params.graduated.release_time_s);
 }
 
 ControlValveState ControlValve::Charged(double pipe_pa) const {
@@ -108,8 +104,7 @@ double ControlValve::BailOff(ControlValveState& s, double pipe_pa) const {
   return PassToPlace(exhaust_, dt_s_, s.cylinder_pa, cylinder_m3_, kAtmospherePa);
 }
 
-double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double& pipe_pa,
-                                double pipe_m3) const {
+double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double& pipe_pa, double pipe_m3) const {
   const DirectReleaseParams& d = p_.direct;
   double out = 0.0;
 
@@ -176,9 +171,8 @@ double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double&
         PassOneWay(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, s.cylinder_pa, cylinder_m3_);
       const double quick = kAtmospherePa + d.quick_service_kpa * 1e3;
       if (s.quick_service_pa < quick) {
-        const double pv =
-            Min((quick - s.quick_service_pa) * quick_service_m3_,
-                dt_s_ * quick_service_ * pipe_pa * NozzleFunction(s.quick_service_pa / pipe_pa));
+        const double pv = Min((quick - s.quick_service_pa) * quick_service_m3_,
+                              dt_s_ * quick_service_ * pipe_pa * NozzleFunction(s.quick_service_pa / pipe_pa));
         if (pipe_pa > s.quick_service_pa && quick_service_m3_ > 0.0) {
           pipe_pa -= pv / pipe_m3;
           s.quick_service_pa += pv / quick_service_m3_;
@@ -194,8 +188,7 @@ double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double&
     case ControlValveMode::kEmergency:
       Pass(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, s.cylinder_pa, cylinder_m3_);
       PassOneWay(emergency_, dt_s_, s.emergency_pa, emergency_m3_, s.cylinder_pa, cylinder_m3_);
-      if (d.accelerated_release && s.vent_open_s == 0.0 &&
-          pipe_pa > kAtmospherePa + d.accelerated_release_kpa * 1e3) {
+      if (d.accelerated_release && s.vent_open_s == 0.0 && pipe_pa > kAtmospherePa + d.accelerated_release_kpa * 1e3) {
         PassOneWay(application_, dt_s_, s.cylinder_pa, cylinder_m3_, pipe_pa, pipe_m3);
         PassOneWay(application_, dt_s_, s.auxiliary_pa, auxiliary_m3_, pipe_pa, pipe_m3);
       }
@@ -204,14 +197,13 @@ double ControlValve::StepDirect(Retainer retainer, ControlValveState& s, double&
   return out;
 }
 
-double ControlValve::Follow(double goal_pa, double fill_per_s, double release_per_s,
-                            double least_fill_pa_per_s, ControlValveState& s) const {
+double ControlValve::Follow(double goal_pa, double fill_per_s, double release_per_s, double least_fill_pa_per_s,
+                            ControlValveState& s) const {
   const double now = s.cylinder_pa - kAtmospherePa;
   if (now < goal_pa) {
     const double rate = Max(least_fill_pa_per_s, fill_per_s * (1.05 * goal_pa - now));
     const double share = auxiliary_m3_ / (auxiliary_m3_ + cylinder_m3_);
-    const double rise =
-        Min(Min(goal_pa - now, dt_s_ * rate), Max(0.0, s.auxiliary_pa - s.cylinder_pa) * share);
+    const double rise = Min(Min(goal_pa - now, dt_s_ * rate), Max(0.0, s.auxiliary_pa - s.cylinder_pa) * share);
     s.cylinder_pa += rise;
     s.auxiliary_pa -= rise * cylinder_m3_ / auxiliary_m3_;
     return 0.0;
@@ -251,13 +243,11 @@ double ControlValve::StepGraduated(ControlValveState& s, double& pipe_pa, double
   return out + Follow(goal, fill_per_s_, release_per_s_, least, s);
 }
 
-double ControlValve::StepEcp(const TrainLine& line, ControlValveState& s, double& pipe_pa,
-                             double pipe_m3) const {
+double ControlValve::StepEcp(const TrainLine& line, ControlValveState& s, double& pipe_pa, double pipe_m3) const {
   const EcpParams& e = p_.ecp;
   PassOneWay(charging_, dt_s_, pipe_pa, pipe_m3, s.auxiliary_pa, auxiliary_m3_);
   const bool charged = s.quick_action_pa > kAtmospherePa + e.emergency_pipe_kpa * 1e3 + kEcpArmedAbovePa;
-  if (pipe_pa > s.quick_action_pa)
-    s.quick_action_pa = pipe_pa;  // the highest so far: an empty train is no emergency
+  if (pipe_pa > s.quick_action_pa) s.quick_action_pa = pipe_pa;  // the highest so far: an empty train is no emergency
   const bool lost = charged && pipe_pa < kAtmospherePa + e.emergency_pipe_kpa * 1e3;
   const bool held = s.Mode() == ControlValveMode::kBailedOff;
   const bool emergency = !held && (line.ecp_emergency || lost);

@@ -38,8 +38,7 @@ std::vector<UndesiredEmergency> FindUndesiredEmergencies(PneumaticBrakeParams pa
   std::vector<double> cylinder_pa;
   for (int trial = 1; trial <= search.trials; ++trial) {
     double initial_kpa = params.charged_pressure_kpa;
-    if (trial % 3 == 0)
-      initial_kpa = trial % 2 == 0 ? 0.0 : Uniform(random, 0.0, params.charged_pressure_kpa);
+    if (trial % 3 == 0) initial_kpa = trial % 2 == 0 ? 0.0 : Uniform(random, 0.0, params.charged_pressure_kpa);
     params.initial_pressure_kpa = initial_kpa;
     PneumaticBrake brake(params, vehicle_length_m);
     UndesiredEmergency run{trial, 0, 0.0, initial_kpa, {}};

@@ -56,8 +56,7 @@ PipeGrid::PipeGrid(double diameter, double temperature_k, const std::vector<doub
     rt_over_volume.push_back(rt / volume_m3[i]);
   }
   area_over_length.assign(n + 1, 0.0);
-  for (std::size_t i = 1; i < n; ++i)
-    area_over_length[i] = area_m2 / (0.5 * (lengths_m[i - 1] + lengths_m[i]));
+  for (std::size_t i = 1; i < n; ++i) area_over_length[i] = area_m2 / (0.5 * (lengths_m[i - 1] + lengths_m[i]));
 }
 
 double PipeGrid::LongestStep() const {

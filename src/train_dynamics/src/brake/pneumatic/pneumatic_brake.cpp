@@ -37,11 +37,10 @@ double StepFor(const PipeGrid& grid, double longest_s) {
   return step;
 }
 
-// p V that a relay lets through in dt: it opens in proportion to the pressure that is still wanted, fully at kRelayBand.
-// The opening follows inside the step (implicitly), or it would hunt in a short cell: x = fully open / band,
-// change = error x / (1 + x), at most fully open.
-double RelayFlow(double conductance_rt, double dt_s, double from_pa, double to_pa, double error_pa,
-                 double volume_m3) {
+// p V that a relay lets through in dt: it opens in proportion to the pressure that is still wanted, fully at
+// kRelayBand. The opening follows inside the step (implicitly), or it would hunt in a short cell: x = fully open /
+// band, change = error x / (1 + x), at most fully open.
+double RelayFlow(double conductance_rt, double dt_s, double from_pa, double to_pa, double error_pa, double volume_m3) {
   if (!(from_pa > to_pa)) return 0.0;
   const double fully = conductance_rt * dt_s * from_pa * NozzleFunction(to_pa / from_pa) / volume_m3;
   return volume_m3 * Min(fully, error_pa * fully / (kRelayBand + fully));
@@ -65,8 +64,8 @@ std::vector<int> PneumaticBrakeParams::ValveOfVehicle(int vehicles) const {
   std::vector<int> valve(vehicles, 0);
   for (const BrakeEquipmentParams& e : equipment) {
     if (e.valve.empty()) continue;
-    const auto found = std::find_if(valves.begin(), valves.end(),
-                                    [&](const ControlValveParams& v) { return v.name == e.valve; });
+    const auto found =
+        std::find_if(valves.begin(), valves.end(), [&](const ControlValveParams& v) { return v.name == e.valve; });
     if (found == valves.end()) throw std::invalid_argument("equipment names no valve: " + e.valve);
     const int from = VehicleIndex(e.from, vehicles), to = VehicleIndex(e.to, vehicles);
     for (int i = from; i <= to; ++i) valve[i] = static_cast<int>(found - valves.begin());
@@ -74,16 +73,13 @@ std::vector<int> PneumaticBrakeParams::ValveOfVehicle(int vehicles) const {
   return valve;
 }
 
-std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands,
-                                                          int n) const {
+std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<BrakeCommand>& commands, int n) const {
   std::vector<BrokenRule> broken;
-  const auto at = [](const char* list, std::size_t i) {
-    return std::string(list) + "[" + std::to_string(i) + "]";
-  };
+  const auto at = [](const char* list, std::size_t i) { return std::string(list) + "[" + std::to_string(i) + "]"; };
   const auto outside = [&](int number) { return VehicleIndex(number, n) < 0; };
-  const std::string behind = n > 1 ? "must be in [1, " + std::to_string(n - 1) +
-                                         "]: a hose and its angle cocks are between two vehicles"
-                                   : "has no place in a train of one vehicle";
+  const std::string behind =
+      n > 1 ? "must be in [1, " + std::to_string(n - 1) + "]: a hose and its angle cocks are between two vehicles"
+            : "has no place in a train of one vehicle";
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (outside(sources[i].vehicle))
       broken.push_back({"brake." + at("sources", i) + ".vehicle", VehicleRule(n), {kVehicleCounts}});
@@ -124,8 +120,8 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
     for (int v = from; v <= to; ++v) {
       if (said_by[v] >= 0) {
         broken.push_back({key + ".from",
-                          "must leave each vehicle to one entry: vehicle " + std::to_string(v + 1) +
-                              " is in brake." + at("equipment", said_by[v]) + ", too",
+                          "must leave each vehicle to one entry: vehicle " + std::to_string(v + 1) + " is in brake." +
+                              at("equipment", said_by[v]) + ", too",
                           {"brake.equipment[].from", "brake.equipment[].to"}});
         break;
       }
@@ -140,8 +136,7 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
       broken.push_back({"brake." + at("parted_hoses", i) + ".behind_vehicle", behind, {kVehicleCounts}});
   bool direct = false;
   if (good)
-    for (int valve : ValveOfVehicle(n))
-      direct = direct || valves[valve].kind == ControlValveKind::kDirectRelease;
+    for (int valve : ValveOfVehicle(n)) direct = direct || valves[valve].kind == ControlValveKind::kDirectRelease;
   double reduction = 0.0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const std::string key = at("commands", i) + ".reduction_kpa";
@@ -151,30 +146,26 @@ std::vector<BrokenRule> PneumaticBrakeParams::BrokenRules(const std::vector<Brak
     }
     const double wanted = commands[i].reduction_kpa;
     if (wanted > charged_pressure_kpa)
-      broken.push_back(
-          {key,
-           "must be at most brake.charged_pressure_kpa, " + ShortestDecimal(charged_pressure_kpa),
-           {"brake.charged_pressure_kpa"}});
+      broken.push_back({key,
+                        "must be at most brake.charged_pressure_kpa, " + ShortestDecimal(charged_pressure_kpa),
+                        {"brake.charged_pressure_kpa"}});
     if (direct && wanted < reduction)
-      broken.push_back(
-          {key,
-           "must not be below that of the application before, " + ShortestDecimal(reduction) +
-               ": valves of direct release cannot let the brake down by steps; release first, or give the "
-               "vehicles valves of kind graduated_release",
-           {"brake.valves", "brake.equipment", "commands[].kind", "commands[].reduction_kpa"}});
+      broken.push_back({key,
+                        "must not be below that of the application before, " + ShortestDecimal(reduction) +
+                            ": valves of direct release cannot let the brake down by steps; release first, or give the "
+                            "vehicles valves of kind graduated_release",
+                        {"brake.valves", "brake.equipment", "commands[].kind", "commands[].reduction_kpa"}});
     reduction = wanted;
   }
   return broken;
 }
 
 bool PneumaticBrakeParams::ReleasesGradually() const {
-  return std::all_of(valves.begin(), valves.end(), [](const ControlValveParams& valve) {
-    return valve.kind != ControlValveKind::kDirectRelease;
-  });
+  return std::all_of(valves.begin(), valves.end(),
+                     [](const ControlValveParams& valve) { return valve.kind != ControlValveKind::kDirectRelease; });
 }
 
-std::vector<Warning> PneumaticBrakeParams::Warnings(const std::vector<BrakeCommand>& /*commands*/,
-                                                    int n) const {
+std::vector<Warning> PneumaticBrakeParams::Warnings(const std::vector<BrakeCommand>& /*commands*/, int n) const {
   std::vector<Warning> warnings;
   std::vector<int> of_valve(valves.size(), 0);
   int direct = 0, graduated = 0, ecp = 0;
@@ -186,10 +177,10 @@ std::vector<Warning> PneumaticBrakeParams::Warnings(const std::vector<BrakeComma
   }
   if (direct > 0 && graduated > 0) {
     warnings.push_back(
-        {"brake.valves",
-         "the train has " + std::to_string(direct) + " valves of direct and " + std::to_string(graduated) +
-             " of graduated release: at the first rise of the pipe the direct ones release fully, the "
-             "others follow the pipe, so that parts of the train brake while others run free"});
+        {"brake.valves", "the train has " + std::to_string(direct) + " valves of direct and " +
+                             std::to_string(graduated) +
+                             " of graduated release: at the first rise of the pipe the direct ones release fully, the "
+                             "others follow the pipe, so that parts of the train brake while others run free"});
   }
   if (ecp > 0 && ecp < n) {
     warnings.push_back({"brake.valves", "the train has " + std::to_string(ecp) + " ECP vehicles of " +
@@ -204,8 +195,7 @@ std::vector<Warning> PneumaticBrakeParams::Warnings(const std::vector<BrakeComma
   return warnings;
 }
 
-PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
-                               const std::vector<double>& vehicle_length_m,
+PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m,
                                std::vector<BrakeCommand> commands)
     : params_(params),
       grid_(MakeGrid(params, vehicle_length_m)),
@@ -216,12 +206,10 @@ PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params,
   for (int i = 0; i < vehicles; ++i) {
     if (vehicle_length_m[i] > kLongestForOneValve)
       throw std::invalid_argument("vehicle " + std::to_string(i + 1) +
-                                  " is longer than 38.1 m (125 ft), the most that one " +
-                                  "control valve serves");
+                                  " is longer than 38.1 m (125 ft), the most that one " + "control valve serves");
   }
   const int cells = params.pipe.cells_per_vehicle;
-  for (const ControlValveParams& valve : params.valves)
-    valves_.emplace_back(valve, params.pipe.temperature_k, dt_s_);
+  for (const ControlValveParams& valve : params.valves) valves_.emplace_back(valve, params.pipe.temperature_k, dt_s_);
   valve_of_ = params.ValveOfVehicle(vehicles);
   cut_out_.assign(vehicles, 0);
   retainer_.assign(vehicles, Retainer::kDirect);
@@ -291,8 +279,7 @@ void PneumaticBrake::TrapAir(int vehicle, double pressure_pa) {
   states_[vehicle].cylinder_pa = kAtmospherePa + pressure_pa;
 }
 
-void PneumaticBrake::Send(SourceState& source, double now_s, double delay_s,
-                          const BrakeCommand& command) const {
+void PneumaticBrake::Send(SourceState& source, double now_s, double delay_s, const BrakeCommand& command) const {
   CommandsUnderWay& way = source.under_way;
   // What cannot be held any more is overtaken by the newest.
   const int at = std::min(static_cast<int>(way.count), CommandsUnderWay::kMost - 1);
@@ -337,8 +324,7 @@ void PneumaticBrake::Receive(SourceState& source, double now_s) const {
         if (source.emergency == 0.0) source.goal_pa = Max(0.0, charged_pa - entry.reduction_pa);
         break;
       case BrakeCommandKind::kRelease:
-        if (source.emergency == 1.0 && entry.arrives_s - source.emergency_from_s < valve.blocking_time_s)
-          break;
+        if (source.emergency == 1.0 && entry.arrives_s - source.emergency_from_s < valve.blocking_time_s) break;
         if (source.emergency == 1.0) source.equalising_pa = 0.0;
         source.emergency = 0.0;
         source.goal_pa = charged_pa;
@@ -385,8 +371,8 @@ void PneumaticBrake::StepSource(int i) {
     out = PassToPlace(emergency_, dt_s_, pressure, volume, kAtmospherePa);
   } else {
     Equalise(source, now_s);
-    // A remote valve that has heard nothing for so long laps: it feeds less and less, or the end of its flow would be a fall
-    // of the pipe beside it that is an emergency's.
+    // A remote valve that has heard nothing for so long laps: it feeds less and less, or the end of its flow would be a
+    // fall of the pipe beside it that is an emergency's.
     double lapped_s = 0.0;
     if (p.kind == PipeSourceKind::kRemote && p.RadioIsLost(now_s))
       lapped_s = Max(0.0, now_s - *p.radio_lost_from_s - kRadioPatience);
@@ -408,8 +394,8 @@ void PneumaticBrake::StepSource(int i) {
 }
 
 void PneumaticBrake::Step() {
-  for (auto next = static_cast<std::size_t>(given_);
-       next < commands_.size() && commands_[next].time_s <= time_s(); ++next) {
+  for (auto next = static_cast<std::size_t>(given_); next < commands_.size() && commands_[next].time_s <= time_s();
+       ++next) {
     Command(commands_[next]);
     given_ += 1.0;
   }
@@ -448,8 +434,7 @@ void PneumaticBrake::Step() {
     ControlValveState& s = states_[i];
     const int cell = valve_cell_[i];
     if (!cut_out_[i])
-      released_pv_ +=
-          valves_[valve_of_[i]].Step(line, retainer_[i], s, pressure[cell], grid_.volume_m3[cell]);
+      released_pv_ += valves_[valve_of_[i]].Step(line, retainer_[i], s, pressure[cell], grid_.volume_m3[cell]);
     acting_pa_[i] = pressure_share_[i] * (s.cylinder_pa - kAtmospherePa);
   }
   steps_ += 1.0;
@@ -459,8 +444,7 @@ void PneumaticBrake::PressuresAt(double when_s, std::vector<double>& pressure_pa
   while (time_s() < when_s) Step();
   const double back = Clamp((time_s() - when_s) / dt_s_, 0.0, 1.0);
   pressure_pa.resize(states_.size());
-  for (int i = 0; i < vehicles(); ++i)
-    pressure_pa[i] = acting_pa_[i] - back * (acting_pa_[i] - acting_before_pa_[i]);
+  for (int i = 0; i < vehicles(); ++i) pressure_pa[i] = acting_pa_[i] - back * (acting_pa_[i] - acting_before_pa_[i]);
 }
 
 void PneumaticBrake::Record(BrakeRecordArrays& record) const {

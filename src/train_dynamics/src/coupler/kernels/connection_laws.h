@@ -55,8 +55,7 @@ TRAIN_DYNAMICS_FLATTEN void ConnectionForces(const Law& type, double prediction_
 }
 
 template <class T, class Law>
-TRAIN_DYNAMICS_FLATTEN void ConnectionWork(const Law& type, const double* extension_m,
-                                           const ConnectionArrays& at) {
+TRAIN_DYNAMICS_FLATTEN void ConnectionWork(const Law& type, const double* extension_m, const ConnectionArrays& at) {
   const Law law = type;
   for (int i = 0; i < at.count; i += kLanesOf<T>) {
     const T end = Load<T>(extension_m + i);

@@ -36,8 +36,7 @@ TRAIN_DYNAMICS_FLATTEN void OffsetDifferences(int count, int stride, const doubl
 }
 
 template <class T>
-TRAIN_DYNAMICS_FLATTEN void Spread(int count, int stride, const double* __restrict from,
-                                   double* __restrict to) {
+TRAIN_DYNAMICS_FLATTEN void Spread(int count, int stride, const double* __restrict from, double* __restrict to) {
   WithStride<T>(stride, [=](auto by) {
     for (int i = 0; i < count; ++i) to[i * by] = from[i];
   });

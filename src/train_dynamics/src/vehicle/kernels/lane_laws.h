@@ -11,14 +11,13 @@ namespace train_dynamics {
 
 template <bool kAll, bool kReacts, class T, int kPerBogie>
 void Step(const BogieVehicle<kPerBogie>& wagon, const Track& track, const OneSurface& surface,
-          const VehicleLoads<T>& loads, double dt, WagonState<T, kPerBogie>& state,
-          WagonOutput<T, kPerBogie>* output) {
+          const VehicleLoads<T>& loads, double dt, WagonState<T, kPerBogie>& state, WagonOutput<T, kPerBogie>* output) {
   StepWagonWith<kAll, kReacts>(wagon, track, surface, loads, dt, state, output);
 }
 
 template <bool kAll, bool kReacts, class T>
-void Step(const LtdVehicle& vehicle, const Track& track, const OneSurface& /*surface*/,
-          const VehicleLoads<T>& loads, double dt, LtdState<T>& state, LtdOutput<T>* output) {
+void Step(const LtdVehicle& vehicle, const Track& track, const OneSurface& /*surface*/, const VehicleLoads<T>& loads,
+          double dt, LtdState<T>& state, LtdOutput<T>* output) {
   StepLtdWith<kAll>(vehicle, track, loads, dt, state, output);
 }
 
@@ -48,9 +47,9 @@ void StoreNumbers(const std::array<T, n>& values, double* place) {
 template <class T>
 bool HasRareLoads(const LoadPlaces& places) {
   bool has = places.wheelset_pressure_pa != nullptr || places.traction_share != nullptr;
-  ForEachLoad([&has](const LoadInfo& load,
-                     const double* place) { has |= load.given == Given::kWhereUsed && place != nullptr; },
-              places);
+  ForEachLoad(
+      [&has](const LoadInfo& load, const double* place) { has |= load.given == Given::kWhereUsed && place != nullptr; },
+      places);
   return has;
 }
 
@@ -82,10 +81,9 @@ struct Packs {
 /// @tparam kReacts  see StepWagonWith
 /// @param surface  see StepWagonWith
 template <class T, bool kAll, bool kReacts, class Vehicle>
-TRAIN_DYNAMICS_FLATTEN bool StepPacksUnder(const Vehicle& vehicle, const Track& track,
-                                           const OneSurface& surface, double dt, int steps, Packs packs,
-                                           const LoadPlaces& load_places, const ReplyPlaces& reply_places,
-                                           std::byte* states, std::byte* outputs) {
+TRAIN_DYNAMICS_FLATTEN bool StepPacksUnder(const Vehicle& vehicle, const Track& track, const OneSurface& surface,
+                                           double dt, int steps, Packs packs, const LoadPlaces& load_places,
+                                           const ReplyPlaces& reply_places, std::byte* states, std::byte* outputs) {
   using State = typename Vehicle::template State<T>;
   using Output = typename Vehicle::template Output<T>;
   static_assert(sizeof(State) == kLanesOf<T> * sizeof(typename Vehicle::template State<double>) &&
@@ -122,21 +120,20 @@ TRAIN_DYNAMICS_FLATTEN bool StepPacksUnder(const Vehicle& vehicle, const Track& 
   return AllOf(sound);
 }
 
-/// The same, told that no store changes vehicle or track: what is constant in an LTD vehicle stays in registers. A wagon has
-/// too much of it, which would push its state out.
+/// The same, told that no store changes vehicle or track: what is constant in an LTD vehicle stays in registers. A
+/// wagon has too much of it, which would push its state out.
 template <class T, bool kAll>
-TRAIN_DYNAMICS_FLATTEN bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track,
-                                         double dt, int steps, Packs packs, const LoadPlaces& loads,
-                                         const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+TRAIN_DYNAMICS_FLATTEN bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track, double dt,
+                                         int steps, Packs packs, const LoadPlaces& loads, const ReplyPlaces& reply,
+                                         std::byte* states, std::byte* outputs) {
   return StepPacksUnder<T, kAll, kAll>(vehicle, track, {}, dt, steps, packs, loads, reply, states, outputs);
 }
 
-/// Plain vehicles on a track with dips or patches: pack by pack and step by step, a pack on one surface and no dip takes
-/// the step without look-ups.
+/// Plain vehicles on a track with dips or patches: pack by pack and step by step, a pack on one surface and no dip
+/// takes the step without look-ups.
 template <class T, int kPerBogie>
-bool StepPacksOnAnyTrack(const BogieVehicle<kPerBogie>& vehicle, const Track& track, double dt, int steps,
-                         int packs, const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states,
-                         std::byte* outputs) {
+bool StepPacksOnAnyTrack(const BogieVehicle<kPerBogie>& vehicle, const Track& track, double dt, int steps, int packs,
+                         const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
   using Vehicle = BogieVehicle<kPerBogie>;
   const auto on_one_surface =
       Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle> : &StepPacksUnder<T, false, false, Vehicle>;
@@ -145,19 +142,18 @@ bool StepPacksOnAnyTrack(const BogieVehicle<kPerBogie>& vehicle, const Track& tr
     const auto& pack = reinterpret_cast<const WagonState<T, kPerBogie>*>(states)[i];
     for (int step = 1; step <= steps; ++step) {
       OneSurface surface;
-      const auto advance = FindOneSurface(vehicle, track, dt, pack, surface)
-                               ? on_one_surface
-                               : &StepPacksUnder<T, true, true, Vehicle>;
-      sound &= advance(vehicle, track, surface, dt, 1, {i, i + 1}, loads, reply, states,
-                       step == steps ? outputs : nullptr);
+      const auto advance =
+          FindOneSurface(vehicle, track, dt, pack, surface) ? on_one_surface : &StepPacksUnder<T, true, true, Vehicle>;
+      sound &=
+          advance(vehicle, track, surface, dt, 1, {i, i + 1}, loads, reply, states, step == steps ? outputs : nullptr);
     }
   }
   return sound;
 }
 
 template <class T>
-bool StepPacks(const LtdVehicle& vehicle, const Track& track, double dt, int steps, int packs,
-               const LoadPlaces& loads, const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
+bool StepPacks(const LtdVehicle& vehicle, const Track& track, double dt, int steps, int packs, const LoadPlaces& loads,
+               const ReplyPlaces& reply, std::byte* states, std::byte* outputs) {
   const bool all = HasRareLoads<T>(loads) || !IsPlain(vehicle, track);
   const auto step = all ? &StepLtdPacks<T, true> : &StepLtdPacks<T, false>;
   return step(vehicle, track, dt, steps, {0, packs}, loads, reply, states, outputs);
@@ -173,8 +169,8 @@ bool StepPacks(const BogieVehicle<kPerBogie>& vehicle, const Track& track, doubl
   const auto step = all               ? &StepPacksUnder<T, true, true, Vehicle>
                     : Reacts(vehicle) ? &StepPacksUnder<T, false, true, Vehicle>
                                       : &StepPacksUnder<T, false, false, Vehicle>;
-  return step(vehicle, track, OwnSurface<T>(vehicle.params.wheel_rail.adhesion), dt, steps, {0, packs}, loads,
-              reply, states, outputs);
+  return step(vehicle, track, OwnSurface<T>(vehicle.params.wheel_rail.adhesion), dt, steps, {0, packs}, loads, reply,
+              states, outputs);
 }
 
 template <class T, class Vehicle>
@@ -184,9 +180,7 @@ void RecordPack(const Vehicle& vehicle, const std::byte* state, const std::byte*
   const auto& shown = *reinterpret_cast<const typename Vehicle::template Output<T>*>(output);
   const VehicleReply<T> reply = ReplyOf<T>(vehicle, pack);
   const VehicleRecord<T> record = RecordOf(vehicle, pack, shown);
-  const auto store = [](const RecordInfo& /*field*/, const auto& value, double* place) {
-    StoreNumbers(value, place);
-  };
+  const auto store = [](const RecordInfo& /*field*/, const auto& value, double* place) { StoreNumbers(value, place); };
   ForEachReplyField(store, reply, reply_places);
   ForEachRecordField(store, record, record_places);
 }

@@ -15,8 +15,9 @@ enum class ControlValveKind {
 
 /// Direct release, AB type. Thresholds after the generic car valve of the TPS manual [S]: 0.75, 0.25, 1.75 psi. Its
 /// passages to the cylinder are 1/8 in; here 2.4 mm [A], with which a rack of 150 cars vented at both ends fills all
-/// cylinders to 99 % in the published 16 s (3.2 mm: 11 s). The passages that take air from the pipe in an application are so
-/// small [A] that no row of them makes a fall that an emergency needs (with 3.2 and 1.0 mm the tail of 150 wagons does).
+/// cylinders to 99 % in the published 16 s (3.2 mm: 11 s). The passages that take air from the pipe in an application
+/// are so small [A] that no row of them makes a fall that an emergency needs (with 3.2 and 1.0 mm the tail of 150
+/// wagons does).
 struct DirectReleaseParams {
   double apply_kpa = 5.2;
   double lap_kpa = 1.7;
@@ -84,8 +85,8 @@ struct DirectReleaseParams {
 ///   dp/dt = -b_r (p - goal) down to it            b_r = ln(0.95 p_max / 40 kPa) / release_time_s
 ///
 /// First step: below 10 % of p_max the cylinder fills at p_max / 10 per second at least. It applies once the pipe is
-/// insensitivity_kpa below p_R and releases once it is within release_kpa. While released, the pipe and p_R equalise with
-/// control_time_s: slow changes of the pipe (0.5 kPa/s: 10 kPa) do not apply the brake. [M: UIC 540, EN 15355; A]
+/// insensitivity_kpa below p_R and releases once it is within release_kpa. While released, the pipe and p_R equalise
+/// with control_time_s: slow changes of the pipe (0.5 kPa/s: 10 kPa) do not apply the brake. [M: UIC 540, EN 15355; A]
 struct GraduatedReleaseParams {
   double ratio = 3.8 / 1.5;
   double maximum_cylinder_kpa = 380.0;
@@ -99,8 +100,7 @@ struct GraduatedReleaseParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Number("ratio", ratio, Range{0.5, 10.0, false, false},
-             "k, cylinder pressure over the fall of the pipe");
+    v.Number("ratio", ratio, Range{0.5, 10.0, false, false}, "k, cylinder pressure over the fall of the pipe");
     v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false},
              "p_max, largest cylinder pressure");
     v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false},
@@ -117,13 +117,12 @@ struct GraduatedReleaseParams {
              "volume of the accelerating chamber, which takes air from the pipe");
     v.Number("quick_service_kpa", quick_service_kpa, Range{0.0, 300.0, false, false},
              "pressure of that chamber at which it takes no more");
-    v.Check(release_kpa < insensitivity_kpa, "release_kpa", "must be below insensitivity_kpa",
-            {"insensitivity_kpa"});
+    v.Check(release_kpa < insensitivity_kpa, "release_kpa", "must be below insensitivity_kpa", {"insensitivity_kpa"});
   }
 };
 
-/// ECP. The goal is a share of full service of maximum_cylinder_kpa, sent to all vehicles at once; the cylinder follows it
-/// as a distributor's does, with the times below. A pipe below emergency_pipe_kpa is an emergency, whatever is sent.
+/// ECP. The goal is a share of full service of maximum_cylinder_kpa, sent to all vehicles at once; the cylinder follows
+/// it as a distributor's does, with the times below. A pipe below emergency_pipe_kpa is an emergency, whatever is sent.
 struct EcpParams {
   double maximum_cylinder_kpa = 430.0;
   double delay_s = 0.2;
@@ -136,8 +135,7 @@ struct EcpParams {
   void Visit(Visitor& v) {
     v.Number("maximum_cylinder_kpa", maximum_cylinder_kpa, Range{50.0, 1000.0, false, false},
              "cylinder pressure of a full application");
-    v.Number("delay_s", delay_s, Range{0.0, 10.0, false, false},
-             "from the driver's command to the valve [A]");
+    v.Number("delay_s", delay_s, Range{0.0, 10.0, false, false}, "from the driver's command to the valve [A]");
     v.Number("fill_time_s", fill_time_s, Range{0.5, 100.0, false, false}, "to 95 % of the goal [A]");
     v.Number("emergency_fill_time_s", emergency_fill_time_s, Range{0.5, 100.0, false, false},
              "the same in an emergency [A]");
@@ -253,15 +251,14 @@ class ControlValve {
   /// One step over the pipe's pressure at the vehicle. @return p V let out to the atmosphere [J]
   ///
   /// @param pipe_pa  of the vehicle's cell, of volume pipe_m3; changed by what the valve takes or vents
-  double Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa,
-              double pipe_m3) const;
+  double Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa, double pipe_m3) const;
 
-  /// A step of a bail-off, before Step: a locomotive's brake is let go while that of the train stays applied. @return p V
-  /// let out to the atmosphere [J]
+  /// A step of a bail-off, before Step: a locomotive's brake is let go while that of the train stays applied. @return p
+  /// V let out to the atmosphere [J]
   ///
-  /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills it
-  /// again when the handle is let go. Graduated release lets its control reservoir down to the pipe, and so lets go in its
-  /// release time; so does ECP, while the handle is held.
+  /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills
+  /// it again when the handle is let go. Graduated release lets its control reservoir down to the pipe, and so lets go
+  /// in its release time; so does ECP, while the handle is held.
   double BailOff(ControlValveState& s, double pipe_pa) const;
 
   /// p V of all air that the state holds [J].
@@ -281,8 +278,7 @@ class ControlValve {
   double dt_s_;
   double auxiliary_m3_, emergency_m3_, cylinder_m3_, quick_service_m3_;
   // conductance times R T [m3/s]
-  double charging_, application_, exhaust_, slow_direct_, emergency_, vent_, limiting_, ep_vent_,
-      quick_service_;
+  double charging_, application_, exhaust_, slow_direct_, emergency_, vent_, limiting_, ep_vent_, quick_service_;
   double chamber_share_;  ///< of the gap that the chamber closes in a step: 1 - exp(-dt / tau)
   double leak_pa_;        ///< of the cylinder in a step
   double fill_per_s_, emergency_fill_per_s_, release_per_s_;

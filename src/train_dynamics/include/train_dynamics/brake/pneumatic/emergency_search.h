@@ -24,10 +24,10 @@ struct UndesiredEmergency {
   std::vector<BrakeCommand> commands;  ///< until then
 };
 
-/// Drives a train's brake by random service applications (reductions from 15 kPa to 30 kPa more than full service), steps
-/// back, where all valves allow them, and releases. Every third trial begins with an empty pipe or one between empty and
-/// charged: the train recharges. Hoses hold; sources have no commands of their own; angle cocks and radio stay as they are.
-/// The same seed gives the same trials on every machine.
+/// Drives a train's brake by random service applications (reductions from 15 kPa to 30 kPa more than full service),
+/// steps back, where all valves allow them, and releases. Every third trial begins with an empty pipe or one between
+/// empty and charged: the train recharges. Hoses hold; sources have no commands of their own; angle cocks and radio
+/// stay as they are. The same seed gives the same trials on every machine.
 std::vector<UndesiredEmergency> FindUndesiredEmergencies(PneumaticBrakeParams params,
                                                          const std::vector<double>& vehicle_length_m,
                                                          const EmergencySearch& search);

@@ -10,9 +10,8 @@ namespace train_dynamics {
 ///
 ///   f = 64/Re | 0.000137 Re^0.717 from 2000 | 0.13977 Re^-0.11781 from 4000 | 0.04 from 40000     (Abdol-Hamid 1986)
 ///
-/// From a table that is linear in Re between 2000 and 40000, steps of 50: within 3e-4 of the law, but beside its jump of
-/// 0.4 % at 4000, and the same bits everywhere.
-/// A constant factor may be given in its place.
+/// From a table that is linear in Re between 2000 and 40000, steps of 50: within 3e-4 of the law, but beside its jump
+/// of 0.4 % at 4000, and the same bits everywhere. A constant factor may be given in its place.
 class PipeFriction {
  public:
   PipeFriction();
@@ -45,12 +44,11 @@ struct PipeGrid {
   double LongestStep() const;
 
   double diameter_m, area_m2;
-  double rt;                           ///< R T = c^2 [m2/s2]
-  std::vector<double> cell_length_m;   ///< [cell]
-  std::vector<double> volume_m3;       ///< [cell], with branches: A dx (1 + nu)
-  std::vector<double> rt_over_volume;  ///< [cell]
-  std::vector<double>
-      area_over_length;  ///< [face 0 ... cells], between cell centres; face i is in front of cell i
+  double rt;                             ///< R T = c^2 [m2/s2]
+  std::vector<double> cell_length_m;     ///< [cell]
+  std::vector<double> volume_m3;         ///< [cell], with branches: A dx (1 + nu)
+  std::vector<double> rt_over_volume;    ///< [cell]
+  std::vector<double> area_over_length;  ///< [face 0 ... cells], between cell centres; face i is in front of cell i
   PipeFriction friction;
 };
 
@@ -60,8 +58,8 @@ struct PipeFlow {
 
   std::vector<double> pressure_pa;  ///< [cell], absolute
   std::vector<double>
-      mass_flow_kgps;  ///< [face 0 ... cells], towards the rear; at the two ends the caller's, first none
-  std::vector<double> open;           ///< [face 0 ... cells], 1 or 0: an angle cock closed, a hose parted
+      mass_flow_kgps;        ///< [face 0 ... cells], towards the rear; at the two ends the caller's, first none
+  std::vector<double> open;  ///< [face 0 ... cells], 1 or 0: an angle cock closed, a hose parted
   std::vector<double> momentum_flux;  ///< [cell], M^2/(rho A) [N]: of the step, no state
 };
 
@@ -70,11 +68,12 @@ struct PipeFlow {
 ///   (1 + nu) d rho/dt + d m/dx = 0
 ///   d m/dt + d(m^2/rho)/dx + c^2 d rho/dx + f |m| m / (2 D rho) = 0,     c^2 = R T, m = rho u
 ///
-/// on a staggered grid (pressures in cells, mass flows M = A m on the faces between them), momentum first, then mass with
-/// the new flows; friction implicit, momentum carried from upwind. Closed faces let nothing through. At the two ends the flow is what the caller has set
-/// before (0: closed; a nozzle there takes the momentum of its air along). Everything else that enters or leaves is a side
-/// flow without axial momentum, applied to a cell's pressure between steps (AddMass, and Pass in air.h over the cell's
-/// volume). So the pipe itself keeps its mass to rounding. First order in dt and, by the carried momentum, in dx.
+/// on a staggered grid (pressures in cells, mass flows M = A m on the faces between them), momentum first, then mass
+/// with the new flows; friction implicit, momentum carried from upwind. Closed faces let nothing through. At the two
+/// ends the flow is what the caller has set before (0: closed; a nozzle there takes the momentum of its air along).
+/// Everything else that enters or leaves is a side flow without axial momentum, applied to a cell's pressure between
+/// steps (AddMass, and Pass in air.h over the cell's volume). So the pipe itself keeps its mass to rounding. First
+/// order in dt and, by the carried momentum, in dx.
 ///
 /// Left out: temperature (a fast expansion is colder than isothermal), bends and couplings one by one.
 /// Sources: Abdol-Hamid 1986; Specchia, Afshari, Shabana & Caldwell, Proc. IMechE F 227 (2013), the equations [S].

@@ -33,8 +33,7 @@ struct TrainPipeParams {
              "length of the pipe over that of the vehicle [S]");
     v.Number("branch_volume_l", branch_volume_l, Range{0.0, 20.0, false, false},
              "volume of the branch pipe of each vehicle [A]");
-    v.Number("temperature_k", temperature_k, Range{223.0, 323.0, false, false},
-             "temperature of the air, constant");
+    v.Number("temperature_k", temperature_k, Range{223.0, 323.0, false, false}, "temperature of the air, constant");
     v.Number("leakage_g_per_s_km", leakage_g_per_s_km, Range{0.0, 1000.0, false, false},
              "leakage of the charged pipe per km of it; proportional to the gauge pressure");
     v.Integer("cells_per_vehicle", cells_per_vehicle, Range{1, 1000, false, false},
@@ -72,10 +71,8 @@ struct DriversValveParams {
              "opening through which a service application vents the pipe [A]");
     v.Number("emergency_opening_mm", emergency_opening_mm, Range{15.0, 32.0, false, false},
              "opening through which an emergency vents the pipe [A]");
-    v.Number("blocking_time_s", blocking_time_s, kNonNegative,
-             "time for which nothing ends an emergency [A]");
-    v.Flag("pressure_maintaining", pressure_maintaining,
-           "whether an applied brake's pipe is fed against leakage");
+    v.Number("blocking_time_s", blocking_time_s, kNonNegative, "time for which nothing ends an emergency [A]");
+    v.Flag("pressure_maintaining", pressure_maintaining, "whether an applied brake's pipe is fed against leakage");
     v.Number("overcharge_kpa", overcharge_kpa, Range{0.0, 100.0, false, false},
              "pressure above the charged one that a release gives the pipe");
     v.Number("overcharge_time_s", overcharge_time_s, kNonNegative, "how long it holds");
@@ -127,16 +124,15 @@ struct PipeSourceParams {
                "its beginning [A]");
       v.Check(!radio_lost_to_s || radio_lost_from_s, "radio_lost_to_s", "needs radio_lost_from_s",
               {"radio_lost_from_s"});
-      v.Check(!radio_lost_to_s || !radio_lost_from_s || *radio_lost_to_s > *radio_lost_from_s,
-              "radio_lost_to_s", "must be > radio_lost_from_s", {"radio_lost_from_s"});
+      v.Check(!radio_lost_to_s || !radio_lost_from_s || *radio_lost_to_s > *radio_lost_from_s, "radio_lost_to_s",
+              "must be > radio_lost_from_s", {"radio_lost_from_s"});
     }
     if (kind == PipeSourceKind::kEndOfTrain) {
       v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only tells");
       v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false}, "opening of the device's vent [A]");
     }
     if (kind == PipeSourceKind::kRemote)
-      v.List("commands", commands,
-             "commands of this locomotive alone, in place of the driver's: independent control");
+      v.List("commands", commands, "commands of this locomotive alone, in place of the driver's: independent control");
     v.Check(vehicle != 0, "vehicle", "must count from 1, or from -1 for the last");
   }
 };
@@ -157,8 +153,7 @@ struct BrakeEquipmentParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Integer("from", from, Range{-100000, 100000, false, false},
-              "first vehicle, from 1; or from -1 for the last");
+    v.Integer("from", from, Range{-100000, 100000, false, false}, "first vehicle, from 1; or from -1 for the last");
     v.Integer("to", to, Range{-100000, 100000, false, false}, "last vehicle, likewise");
     v.Text("valve", valve, "name of one of valves; not given: the first");
     v.Flag("cut_out", cut_out, "the vehicles' valves are cut out");
@@ -169,14 +164,12 @@ struct BrakeEquipmentParams {
               {"slow_direct", Retainer::kSlowDirect}},
              "retaining valve: direct: open; high_pressure, low_pressure: keep pressure in the cylinder; "
              "slow_direct: releases slowly");
-    v.Choice("empty_load", empty_load,
-             {{"none", EmptyLoad::kNone},
-              {"two_step", EmptyLoad::kTwoStep},
-              {"proportional", EmptyLoad::kProportional}},
-             "none; two_step: empty_ratio below change_over_share of the load; proportional: with the load");
+    v.Choice(
+        "empty_load", empty_load,
+        {{"none", EmptyLoad::kNone}, {"two_step", EmptyLoad::kTwoStep}, {"proportional", EmptyLoad::kProportional}},
+        "none; two_step: empty_ratio below change_over_share of the load; proportional: with the load");
     v.Number("load_share", load_share, kFraction, "how much of the full load the vehicles carry");
-    v.Number("empty_ratio", empty_ratio, Range{0.1, 1.0, false, false},
-             "cylinder's pressure, empty over loaded");
+    v.Number("empty_ratio", empty_ratio, Range{0.1, 1.0, false, false}, "cylinder's pressure, empty over loaded");
     v.Number("change_over_share", change_over_share, kFraction,
              "share of the load below which a two_step device is set to empty");
   }
@@ -218,8 +211,7 @@ struct PneumaticBrakeParams {
     v.Group("pipe", pipe, "the brake pipe of the train");
     v.Group("drivers_valve", drivers_valve, "the driver's valve, and that of every remote locomotive");
     v.List("sources", sources, "places where the pipe is charged and vented; the first is of kind driver");
-    v.List("valves", valves,
-           "control valves of the vehicles; the first is that of all for which equipment names none");
+    v.List("valves", valves, "control valves of the vehicles; the first is that of all for which equipment names none");
     v.List("equipment", equipment, "what some vehicles have that others have not");
     v.Integers("closed_angle_cocks", closed_angle_cocks, Range{1, 100000, false, false},
                "vehicles behind which an angle cock of the pipe is closed, from 1");
@@ -251,8 +243,7 @@ struct CommandsUnderWay {
 
   template <class Function>
   void ForEachField(Function&& function) {
-    for (Entry& entry : entries)
-      function(entry.arrives_s), function(entry.kind), function(entry.reduction_pa);
+    for (Entry& entry : entries) function(entry.arrives_s), function(entry.kind), function(entry.reduction_pa);
     function(count);
   }
 };
@@ -276,8 +267,8 @@ struct SourceState {
   }
 };
 
-/// The brake pipe of a train with its valves, stepped on a fixed grid of times t_k = k dt, dt <= 5 ms and at most half of
-/// what a wave needs for a cell, whatever is asked for. In a step: commands that have arrived, the air in the pipe,
+/// The brake pipe of a train with its valves, stepped on a fixed grid of times t_k = k dt, dt <= 5 ms and at most half
+/// of what a wave needs for a cell, whatever is asked for. In a step: commands that have arrived, the air in the pipe,
 /// leakage, sources, valves in vehicle order. Cylinder pressures between two grid times are linear.
 ///
 /// Left out: temperature; the locomotives' compressors; hand brakes; piston travel over wear.
