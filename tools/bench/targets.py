@@ -80,8 +80,8 @@ has the master and the recorder besides.""",
     "patches_ns": """wagons side by side that stand on several surfaces look up each wheel's surface, and solve the slip with a
 law for each lane; those on one surface pay for its law: falling friction has an exponential in each iteration.""",
     "ltd_1_wall_s": """couplers take {vehicles.ltd_share_of_couplers %} of an exchange, the vehicles themselves
-{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and two
-divisions, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
+{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and a
+division, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
     "2d_{cores}_recording": RECORDING,
     "2d_1_recording": RECORDING,
     "to_limit": """a wagon has more in flight than any set of registers holds, so that most of its instructions move numbers

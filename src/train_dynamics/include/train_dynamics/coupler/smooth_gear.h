@@ -22,10 +22,15 @@ GearForce<T> SmoothGearForce(const DraftGear& gear, T q, T q_rate) {
   const T travel = GearTravel(p, q);
   if (AllOf(travel == T(0.0))) return {CopySign(T(0.0), q), CopySign(T(0.0), q)};  // in the slack, for all lanes
   const T rate = CopySign(T(0.5), q) * q_rate;
+  const T speed = Abs(rate);
+  // tanh(w / v_e) = sign(w) (1 - f) / (1 + f), f = e^(-2 |w| / v_e): both sides of the fraction times (1 + f).
+  const T faded = Decay(speed * (2.0 / p.smoothing_speed_mps));
+  const T mu = p.kinetic_friction_coefficient + (p.static_friction_coefficient - p.kinetic_friction_coefficient) *
+                                                    Decay(speed * (1.0 / p.stribeck_speed_mps));
   const T spring = GearSpringForce(p, travel);
-  const T mu = GearFrictionCoefficient(p, rate) * Tanh(rate * (1.0 / p.smoothing_speed_mps));
+  const T wedge = gear.tan_wedge * (1.0 + faded);
+  const T with_friction = spring * wedge / (wedge - CopySign(mu * (1.0 - faded), rate));
   const T stop = GearStopForce(p, travel);
-  const T with_friction = spring * gear.tan_wedge / (gear.tan_wedge - mu);
   return {CopySign(with_friction + stop, q), CopySign(spring + stop, q)};
 }
 
