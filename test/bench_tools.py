@@ -138,17 +138,20 @@ class BenchTools(unittest.TestCase):
 
         with mock.patch.multiple(workspace, Launch=Launch, mpi_train=mpi), mock.patch.object(
             exchange, "EXCHANGES", {2: 10, 242: 10}
-        ), mock.patch.object(exchange, "PROFILES", [("shared memory", 2, 1), ("MPI", 2, 1)]):
+        ), mock.patch.object(exchange, "PROFILES", [("shared memory", 2, 1), ("MPI", 2, 1)]), mock.patch.object(
+            exchange, "BUSY", {2: 10}
+        ):
             tables, facts = exchange.run()
         rows = {row[0]: row[1:] for row in tables[0].rows}
         self.assertEqual(("0.75 x", "0.292 x"), rows["shared memory to MPI"])
         self.assertEqual(("0.5 ... 1", "0.25 ... 0.333"), rows["from ... to"])
         self.assertEqual(("0.75 x", "0.286 x"), rows["TCP to MPI"])
         self.assertAlmostEqual((1 / 3 + 1 / 4) / 2, facts["to_mpi_242"])
-        self.assertEqual(["shared memory, 2 ranks", "MPI, 2 ranks"], [row[0] for row in tables[2].rows])
+        self.assertEqual([("2 ranks", "2", "10", "0.2 x")], tables[2].rows)  # MPI's fifth run
+        self.assertEqual(["shared memory, 2 ranks", "MPI, 2 ranks"], [row[0] for row in tables[3].rows])
         with mock.patch.multiple(workspace, Launch=Launch, mpi_train=lambda *_: None), mock.patch.object(
             exchange, "PROFILES", [("MPI", 2, 1)]
-        ):
+        ), mock.patch.object(exchange, "BUSY", {2: 10}):
             tables, facts = exchange.run()
         self.assertIsNone(facts["to_mpi_242"])
         self.assertEqual({"-"}, set(tables[0].rows[-1][1:]))

@@ -14,10 +14,11 @@ MANY_RANKS = 100
 PROFILES = [  # way, ranks, simulated seconds: a few seconds of wall time
     (PAIRED, workspace.VEHICLES, 4),
     ("MPI", workspace.VEHICLES, 4),
-    ("TCP", workspace.VEHICLES, 1),
     (PAIRED, 22, 20),
     ("MPI", 22, 20),
+    ("TCP", 22, 10),
 ]
+BUSY = {22: 1500, 121: 300}  # ranks: exchanges beside a program that keeps one core busy
 
 
 def run():
@@ -59,7 +60,21 @@ def run():
         for ranks in EXCHANGES:
             ratios = _to_mpi(cost, way, ranks)
             facts[f"{name}_{ranks}"] = ratios and measure.median(ratios)
-    return [table, starts, _profiles(facts)], facts
+    return [table, starts, _beside_work(), _profiles(facts)], facts
+
+
+def _beside_work():
+    """The same beside other work, which those who sleep leave its core and those who wait awake share it with."""
+    rows = []
+    for ranks, exchanges in BUSY.items():
+        settings = [f"duration_s={exchanges / 1000:g}"]
+        with workspace.busy_core(0):
+            ours = workspace.Launch(ranks, *WAYS[PAIRED], settings=settings).per_exchange_s()
+            run = workspace.mpi_train(ranks, settings)
+        mpi = run and run["wall_s"] / run["exchanges"]
+        cells = (_ms([ours]), _ms(mpi and [mpi]))
+        rows.append((f"{ranks} ranks", *map(number, cells), times(mpi and ours / mpi)))
+    return Table("beside one busy core [ms]", [PAIRED, "MPI", "to MPI"], rows)
 
 
 def _profiles(facts):

@@ -1,8 +1,5 @@
 """What each part that the paper's train lacks costs a train, and two threads beside other work."""
 import contextlib
-import os
-import subprocess
-import sys
 
 import machine
 import measure
@@ -82,7 +79,7 @@ def _beside_work(facts):
     for busy in (0, 1):
         with contextlib.ExitStack() as stack:
             for core in range(busy):
-                stack.enter_context(_busy_core(core))
+                stack.enter_context(workspace.busy_core(core))
             one, all_cores = measure.in_turn(REPETITIONS, lambda: _wall_s(1), lambda: _wall_s(cores))
         ratio = measure.ratio(all_cores, one)
         facts[f"threads_beside_{busy}"] = ratio
@@ -96,17 +93,3 @@ def _beside_work(facts):
 
 def _wall_s(threads):
     return workspace.train_sim("--model", "2d", "--threads", threads, settings=["duration_s=20"]).summary["wall_s"]
-
-
-@contextlib.contextmanager
-def _busy_core(core):
-    """A program that does nothing but work, on that core."""
-    program = subprocess.Popen(
-        [sys.executable, "-c", "while True: pass"],
-        preexec_fn=lambda: os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[core]}),
-    )
-    try:
-        yield
-    finally:
-        program.kill()
-        program.wait()

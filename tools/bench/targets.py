@@ -57,9 +57,9 @@ FEW_RANKS = """with few ranks an exchange is bound by the time that a sleeping p
 each rank once, {exchange.shared_memory_22_cpu_us} us of a core for each of 22 ranks. Those of MPI stay awake and take
 {exchange.MPI_22_cpu_us} us, at the cost of whatever else wants their cores
 ([lockstep.md](lockstep.md#shared-memory))."""
-TCP = """each rank and exchange takes {exchange.TCP_cpu_us} us of a core, {exchange.TCP_system %} of it in the kernel, which
+TCP = """each rank and exchange takes {exchange.TCP_22_cpu_us} us of a core, {exchange.TCP_22_system %} of it in the kernel, which
 carries every message through the network's layers on loopback: three system calls of the rank (wait, receive, send), two of
-the master, against one through shared memory ({exchange.shared_memory_cpu_us} us)."""
+the master, against one through shared memory ({exchange.shared_memory_22_cpu_us} us)."""
 SPREAD = """an exchange costs about {scaling.{model}_fixed_us} us however short the train is, and 50 vehicles fill
 {scaling.lanes_of_the_last_pack} of the {scaling.lanes} lanes of their last pack, which takes as long as a full one."""
 WHOLE_STEP = """a 2D run is its vehicles: creep and slip take {vehicles.creep_share %} of a wagon's step, the

@@ -1,4 +1,5 @@
 """Where the programs are and how they are called."""
+import contextlib
 import json
 import os
 import pathlib
@@ -158,3 +159,17 @@ def _free_port():
     with socket.socket() as probe:
         probe.bind(("localhost", 0))
         return probe.getsockname()[1]
+
+
+@contextlib.contextmanager
+def busy_core(core):
+    """A program that does nothing but work, on that core."""
+    program = subprocess.Popen(
+        [sys.executable, "-c", "while True: pass"],
+        preexec_fn=lambda: os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[core]}),
+    )
+    try:
+        yield
+    finally:
+        program.kill()
+        program.wait()
