@@ -39,7 +39,7 @@ std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioP
 }  // namespace
 
 DriverCommand LiveCommands::Judge(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) const {
-  const DriverCommand command =
+  DriverCommand command =
       train_dynamics::WithVehicles({train_results::CommandOf(message, exchange)}, scenario_.train).front();
   if (!command.group.empty()) {
     throw std::invalid_argument("group " + train_dynamics::RuleOfGroup(command, scenario_.train) + ", got '" +
