@@ -201,13 +201,13 @@ doc: ## reference of the C++ headers in build/doc/html (Doxygen); any warning is
 tidy: build ## static analysis (clang-tidy 14)
 	@tools/install_packages.sh packages_tidy.txt
 	@$(release) tests $(quietly)
-	@run-clang-tidy -quiet -p build '^$(CURDIR)/src/' 2>&1 | sed -uE '/clang-tidy-|warnings? generated\.$$|^Suppressed |^Use -header-filter/d'
+	@run-clang-tidy -quiet -extra-arg=-Qunused-arguments -p build '^$(CURDIR)/src/' 2>&1 | sed -uE '/clang-tidy-|warnings? generated\.$$|^Suppressed |^Use -header-filter/d'
 
 SINCE ?= HEAD~1
 .PHONY: tidy-short
 tidy-short: build ## ... of the sources (without tests) that changed since the commit SINCE=HEAD~1
 	@tools/install_packages.sh packages_tidy.txt
-	@git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' | xargs -r -n 1 clang-tidy --quiet -p build
+	@git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' | xargs -r -n 1 clang-tidy --quiet --extra-arg=-Qunused-arguments -p build
 
 .PHONY: clean
 clean: ## remove everything built; results stay

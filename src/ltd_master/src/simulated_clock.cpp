@@ -51,10 +51,11 @@ std::string OtherPublisher() {
   XmlRpc::XmlRpcValue state;
   if (!Call("getSystemState", state)) return "";
   XmlRpc::XmlRpcValue& topics = state[0];
+  // NOLINTNEXTLINE(modernize-loop-convert): XmlRpcValue has no iterators
   for (int i = 0; i < topics.size(); ++i) {
     if (static_cast<std::string>(topics[i][0]) != kGlobal) continue;
     for (int k = 0; k < topics[i][1].size(); ++k) {
-      const std::string node = topics[i][1][k];
+      std::string node = topics[i][1][k];
       if (node == ros::this_node::getName()) continue;
       if (train_node::FindRunningNode(node, kPatience).state != train_node::RunningNode::State::kNone) return node;
     }

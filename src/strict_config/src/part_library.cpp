@@ -101,7 +101,7 @@ NodePtr PartLibrary::OpenText(const std::string& text, const std::string& label,
 }
 
 NodePtr PartLibrary::Parse(const std::string& text, Document document, const KeyPath& path) {
-  const NodePtr root = ParseYaml(text, std::make_shared<const Document>(std::move(document)), path, errors_);
+  NodePtr root = ParseYaml(text, std::make_shared<const Document>(std::move(document)), path, errors_);
   if (!root || root->kind == Node::Kind::kMap) return root;
   root->source.Report(errors_, "", "must hold a map of keys and values, got " + Describe(*root));
   return nullptr;

@@ -10,7 +10,7 @@
 int main(int argc, char** argv) {
   constexpr int kBadInput = 2;
   train_node::InitWithWallTime(argc, argv, "train_view");
-  const std::string name = ros::this_node::getName();
+  const std::string& name = ros::this_node::getName();
   const train_node::RunningNode other = train_node::FindNodeOfOwnName();
   if (other.state == train_node::RunningNode::State::kAlive) {
     ROS_FATAL("%s runs already, on %s: it goes on, and its pictures serve any number of rviz", name.c_str(),

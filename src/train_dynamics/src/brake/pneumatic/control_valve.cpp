@@ -13,7 +13,7 @@ constexpr double kSlowDirectOpeningM = 1.45e-3;     ///< empties a cylinder in s
 /// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: a train that
 /// is being charged may fall below it by what its own reservoirs take [A].
 constexpr double kEcpArmedAbovePa = 135e3;
-constexpr double kLn10_5 = 2.3513752571634776;
+constexpr double kLnTenAndAHalf = 2.3513752571634776;
 
 // ln(x) for x >= 1, at set-up only: Halley's steps on e^y = x.
 double Log(double x) {
@@ -50,8 +50,8 @@ ControlValve::ControlValve(const ControlValveParams& params, double temperature_
   chamber_share_ = 1.0 - Exp(-dt_s / (direct ? params.direct.quick_action_time_s : params.graduated.control_time_s));
   leak_pa_ = params.cylinder_leakage_kpa_per_min * 1e3 / 60.0 * dt_s;
   const bool ecp = params.kind == ControlValveKind::kEcp;
-  fill_per_s_ = kLn10_5 / (ecp ? params.ecp.fill_time_s : params.graduated.fill_time_s);
-  emergency_fill_per_s_ = kLn10_5 / params.ecp.emergency_fill_time_s;
+  fill_per_s_ = kLnTenAndAHalf / (ecp ? params.ecp.fill_time_s : params.graduated.fill_time_s);
+  emergency_fill_per_s_ = kLnTenAndAHalf / params.ecp.emergency_fill_time_s;
   const double maximum_kpa = ecp ? params.ecp.maximum_cylinder_kpa : params.graduated.maximum_cylinder_kpa;
   release_per_s_ = Log(0.95 * maximum_kpa / 40.0) / (ecp ? params.ecp.release_time_s : params.graduated.release_time_s);
 }
