@@ -201,7 +201,8 @@ class BenchTools(unittest.TestCase):
                 program = programs / f"takes_{seconds}"
                 program.write_text(
                     f"#!/bin/sh\nsleep {seconds}; : $((n = 0)); while [ $n -lt 3000 ]; do n=$((n + 1)); done\n"
-                    'while [ $# -gt 1 ]; do [ "$1" = --out ] && echo \'{"state_digest": "1"}\' > "$2/summary.json"; shift; done\n'
+                    'while [ $# -gt 1 ]; do [ "$1" = --out ] && echo \'{"state_digest": "1"}\' > "$2/summary.json"; '
+                    "shift; done\n"
                     "exit 0\n"
                 )
                 program.chmod(0o755)

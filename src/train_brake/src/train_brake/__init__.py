@@ -10,7 +10,8 @@
     state.to_pandas()                                 # needs python3-pandas
     run.config, run.summary, run.couplers, run.events # of the same run, where its folder has them
 
-Nothing is read before it is asked for. Arrays that are indexed by vehicle have vehicle 1, the front of the train, at [.., 0].
+Nothing is read before it is asked for. Arrays that are indexed by vehicle have vehicle 1, the front of the train, at
+[.., 0].
 """
 
 from train_brake.bag import BagError, BagFile, Damage, Table

@@ -1,8 +1,8 @@
 """Reads the topics of a bag into tables: a row per message, a column per field.
 
-The bytes of all messages of a topic are joined and seen as one numpy array, in the layout of the installed message, where
-all of them have the same length: a record of 242 vehicles costs some microseconds. Other messages are deserialised one by
-one (of the paper's train: 1 to 3 s for 7000 records).
+The bytes of all messages of a topic are joined and seen as one numpy array, in the layout of the installed message,
+where all of them have the same length: a record of 242 vehicles costs some microseconds. Other messages are
+deserialised one by one (of the paper's train: 1 to 3 s for 7000 records).
 """
 
 import contextlib
@@ -82,8 +82,8 @@ def _comments(definition: str) -> Dict[str, str]:
 class Table:
     """The messages of one topic.
 
-    table["speed_mps"]: a row per message, then what the field's shape is; table.time_s: the simulated times [s] (those of
-    reception for messages without a header).
+    table["speed_mps"]: a row per message, then what the field's shape is; table.time_s: the simulated times [s] (those
+    of reception for messages without a header).
     """
 
     def __init__(self, columns: Dict[str, numpy.ndarray], time_s: numpy.ndarray, definition: str = ""):
@@ -129,8 +129,8 @@ class Table:
         )
 
     def flat(self) -> Iterator[Tuple[str, numpy.ndarray]]:
-        """Columns of single numbers (or texts): (name, [records]). Elements of arrays are numbered from 1: speed_mps_1 is the
-        first vehicle's. Arrays that are not equally long in all messages are left out."""
+        """Columns of single numbers (or texts): (name, [records]). Elements of arrays are numbered from 1: speed_mps_1
+        is the first vehicle's. Arrays that are not equally long in all messages are left out."""
         for name, column in self._columns.items():
             if column.ndim == 1 and column.dtype != object:
                 yield name, column
@@ -164,8 +164,9 @@ def message_class(kind: str) -> Optional[type]:
 
 
 def _must_be_installed(topic: str, kind: str, md5sum: str, definition: str, _header) -> bool:
-    """A filter of connections for rosbag, which makes a Python module of the definition in the bag and imports it: whoever
-    wrote the bag could have any program run. So nothing is read but what is defined as in the installed messages."""
+    """A filter of connections for rosbag, which makes a Python module of the definition in the bag and imports it:
+    whoever wrote the bag could have any program run. So nothing is read but what is defined as in the installed
+    messages."""
     message = message_class(kind)
     # pylint: disable=protected-access
     if message is None or md5sum != message._md5sum or _words(definition) != _words(message._full_text):
@@ -209,8 +210,8 @@ def is_being_written(folder: pathlib.Path) -> bool:
 
 
 def _layout(message: genpy.Message) -> Optional[numpy.dtype]:
-    """Of the serialised bytes of messages whose texts and arrays are as long as those of this one; None if a field is neither
-    a number nor an array of numbers."""
+    """Of the serialised bytes of messages whose texts and arrays are as long as those of this one; None if a field is
+    neither a number nor an array of numbers."""
     fields: List[tuple] = []
     for name, kind in zip(message.__slots__, message._slot_types):  # pylint: disable=protected-access
         if kind == "std_msgs/Header":
@@ -279,7 +280,10 @@ class BagFile:
 
     def _remedy(self) -> str:
         if is_being_written(self.path.parent):
-            return "A run is writing it now: wait for its end, or stop the run (Ctrl-C); a bag that is written to must not be reindexed"
+            return (
+                "A run is writing it now: wait for its end, or stop the run (Ctrl-C); a bag that is written to must "
+                "not be reindexed"
+            )
         once = "Once no recorder is writing it any more, " if self.path.suffix == ".active" else ""
         return f"{once}`rosbag reindex {self.path}` keeps what can be read; then call again"
 

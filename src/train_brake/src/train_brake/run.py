@@ -167,8 +167,8 @@ class Run:
 
     @functools.cached_property
     def couplers(self) -> Optional[Dict[str, numpy.ndarray]]:
-        """couplers.csv: of each connection the largest forces [N] of all exchanges, and their times [s]; None if there is
-        none."""
+        """couplers.csv: of each connection the largest forces [N] of all exchanges, and their times [s]; None if there
+        is none."""
         source = self._beside("couplers.csv")
         return read_couplers(source) if self.bag.name in BAGS and source.exists() else None
 

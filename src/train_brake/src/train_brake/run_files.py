@@ -1,4 +1,5 @@
-"""Whether a file beside a bag is what its name says: another program's summary.json or config.yaml is told, not tripped over."""
+"""Whether a file beside a bag is what its name says: another program's summary.json or config.yaml is told, not tripped
+over."""
 
 import pathlib
 from typing import Any, List, NamedTuple

@@ -1,4 +1,5 @@
-"""`rosrun train_brake vehicle_test`: judges a node that moves external vehicles, as their train's master would call it."""
+"""`rosrun train_brake vehicle_test`: judges a node that moves external vehicles, as their train's master would call
+it."""
 
 import contextlib
 import json
@@ -13,8 +14,8 @@ import time
 
 USAGE = """usage: rosrun train_brake vehicle_test SCENARIO [NODE] [ns:=/train] [deadline_s:=1] [seconds:=10]
 
-Judges the node that moves the external vehicles of a scenario's train, which must be running; NODE where there are several.
-It is called as the train's master would call it, on a level track:
+Judges the node that moves the external vehicles of a scenario's train, which must be running; NODE where there are
+several. It is called as the train's master would call it, on a level track:
 
   protocol       it starts with the declared speed, refuses another version, and exchanges that are not the next one
   refusal        it refuses loads that are not finite, and goes on as if they had not come
@@ -28,7 +29,8 @@ It is called as the train's master would call it, on a level track:
   stability      the exchange interval H is stable with the train's connections and that mass
   slow           every reply comes within deadline_s
 
-Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged by you.
+Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged \
+by you.
 Exit codes: 0 all passed, 1 some failed, 2 bad arguments or no vehicle node to test."""
 
 EPSILON_M = 1e-9

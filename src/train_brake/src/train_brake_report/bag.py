@@ -27,8 +27,8 @@ class Recording:
 
 
 def _by_type(bag: BagFile) -> Dict[str, List[str]]:
-    """The topics of each type. Without those under live/, which hold a few of the records once more, unless there are no
-    others."""
+    """The topics of each type. Without those under live/, which hold a few of the records once more, unless there are
+    no others."""
     found: Dict[str, List[str]] = {}
     for topic, info in bag.topics.items():
         found.setdefault(info.kind, []).append(topic)

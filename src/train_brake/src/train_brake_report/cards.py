@@ -228,7 +228,8 @@ def table_2(rows: List[PaperRow]) -> Figure:
     return Figure(
         "table_2",
         "Table 2: computing time",
-        "The paper's times are those of its 2D train on 243 cores. Those here include the recording of the bag, and depend on the "
+        "The paper's times are those of its 2D train on 243 cores. Those here include the recording of the bag, and "
+        "depend on the "
         "number of threads and wagon nodes and on what else the machine did.",
         table=Table(
             [

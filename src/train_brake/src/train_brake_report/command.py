@@ -19,8 +19,8 @@ from train_brake_report.run import Run, label_runs, scenario_of
 
 DESCRIPTION = """Makes a page with figures of one or several runs of the train: one HTML file that needs no network.
 
-RUN is a folder that a run has left, or a bag, recorded by a run or by rosbag. Several runs are drawn over one another, with
-differences to the first."""
+RUN is a folder that a run has left, or a bag, recorded by a run or by rosbag. Several runs are drawn over one
+another, with differences to the first."""
 EPILOG = "Exit codes: 0 done; 1 a run cannot be read, or the page cannot be written; 2 wrong arguments."
 
 

@@ -160,7 +160,8 @@ class Run:
 
     @functools.cached_property
     def largest_coupler_forces_n(self) -> numpy.ndarray:
-        """[0: tension, 1: compression][connection]: of all exchanges if the run wrote couplers.csv, else of the records."""
+        """[0: tension, 1: compression][connection]: of all exchanges if the run wrote couplers.csv, else of the
+        records."""
         if self.couplers_file is None:
             forces = self.recording.forces["coupler_force_n"]
             return numpy.array([numpy.maximum(forces.max(axis=0), 0.0), numpy.minimum(forces.min(axis=0), 0.0)])

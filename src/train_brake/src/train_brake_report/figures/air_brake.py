@@ -81,9 +81,8 @@ def draw(group: Group) -> Figure:
     style.mark_commands(below, group.commands())
     if len(with_cylinders) > 1:
         below.legend()
-    caption = f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all cylinders, " "to which the brake force is proportional. Build-up: " + "; ".join(
-        told
-    ) + "." + _charged(
-        table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1]
-    )
+    caption = (
+        f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all "
+        f"cylinders, to which the brake force is proportional. Build-up: {'; '.join(told)}."
+    ) + _charged(table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1])
     return Figure("air_brake", "Air in the brake", caption + not_shown, canvas)

@@ -84,9 +84,11 @@ def draw(group: Group) -> Figure:
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is stack)
     caption = (
-        "Top: kinetic energy, what has turned into heat and, where it shows, what springs and heights store. Middle: what "
+        "Top: kinetic energy, what has turned into heat and, where it shows, what springs and heights store. Middle: "
+        "what "
         "each element has taken up since the start, on a "
-        "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
+        "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value "
+        "per "
         f"{numpy.median(numpy.diff(time_s)):g} s."
     )
     if len(group.runs) > 1:

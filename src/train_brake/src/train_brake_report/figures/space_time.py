@@ -380,7 +380,8 @@ def draw_wave(group: Group) -> Figure:
             + (f"it starts at {starts}. " if starts else "where it starts was not recorded. ")
         )
     caption += (
-        f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, the "
+        f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, "
+        f"the "
         "line through its beginning is not. Lines: the fit. Right: how far each vehicle is from it."
     )
     if len(group.runs) > 1:
