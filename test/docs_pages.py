@@ -8,11 +8,12 @@ looks like the workspace with its environment sourced. Comments in the page, whi
 different:
 
     <!-- commands: long -->              run by `make test-docs-long` only: in a clean clone that the page itself builds
-    <!-- commands: background -->        in a terminal of its own, until the page's end; the next block waits for its
-    train <!-- commands: elsewhere REASON -->  cannot be run here; REASON is one of ELSEWHERE <!-- commands: fails -->  
-              each line ends with an error, as the page says <!-- commands: without LINE: REASON -->  lines that begin
-    so are left out, likewise <!-- run: COMMAND -->                done before what follows, for instance a run that the
-    page takes for granted
+    <!-- commands: background -->        in a terminal of its own until the page ends; the next block waits for its
+                                         train
+    <!-- commands: elsewhere REASON -->  cannot be run here; REASON is one of ELSEWHERE
+    <!-- commands: fails -->             each line ends with an error, as the page says
+    <!-- commands: without LINE: REASON -->  lines that begin so are left out, likewise
+    <!-- run: COMMAND -->                done before what follows, for instance a run that the page takes for granted
 
 A block of `text` behind one of commands shows what they print: its lines must be in their output, in this order ("..."
 stands for what is left out).
