@@ -80,7 +80,7 @@ struct ProtectedWheelset {
   /// What was decided at the sample k, at k modulo their number.
   std::array<double, SlideProtectionParams::kLongestDelay + 1> decided{};
   double speed_mps = 0.0;  ///< u at the last sample
-  double vented_s = 0.0;   ///< for how long a vent has been asked for in one piece
+  double vented_s = 0.0;   ///< duration of the present uninterrupted demand to vent
   double vents = 0.0;      ///< how often the valve has begun to vent since the start
 };
 

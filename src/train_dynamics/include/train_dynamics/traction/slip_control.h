@@ -27,7 +27,7 @@ struct SlipControlParams {
   }
 };
 
-/// The share of its torque that a wheelset must do without from now on [-], 0 ... 1:
+/// Share by which the torque of a wheelset is reduced from now on [-], 0 ... 1:
 ///
 ///   reduction = max( K (s - s*),  reduction before - recovery T_s ),   s = u - v,  s* = max(0.02 v, 0.1 m/s)
 ///

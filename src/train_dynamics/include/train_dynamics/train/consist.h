@@ -80,7 +80,7 @@ struct ConsistGroupParams {
   }
 };
 
-/// A train: groups of vehicles from front to rear. Between units stands `connection`.
+/// A train: groups of vehicles from front to rear. `connection` joins the units.
 struct TrainParams {
   std::string name;
   ConnectionParams connection;

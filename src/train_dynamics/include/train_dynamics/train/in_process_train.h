@@ -8,7 +8,7 @@ namespace train_dynamics {
 /// same bits.
 class InProcessTransport : public Transport {
  public:
-  /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
+  /// @param threads  1 = the caller's only; at most one per vehicle is used
   /// @param is_joined  another transport has the external vehicles
   /// @throws std::invalid_argument if there are external vehicles and no transport for them
   InProcessTransport(const ScenarioParams& scenario, const Consist& consist, int threads, bool is_joined = false)

@@ -38,9 +38,9 @@ struct ExchangeRequest : LoadArrays {
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
   bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
-  /// Those of rail that have come since the start of the run, each with a friction_coefficient and no ramp. They lie
-  /// over those of the track, later ones over earlier ones. All of them, in each exchange: a rank that comes later has
-  /// them, too.
+  /// Patches of rail added since the start of the run, each with a friction_coefficient and no ramp. They override
+  /// those of the track, later ones override earlier ones. Each exchange has all of them, so that a rank that joins
+  /// later has them, too.
   std::vector<FrictionPatchParams> friction_patches;
 };
 
@@ -82,7 +82,7 @@ struct ExchangeReply : ReplyArrays, VehicleRecords {
   ExchangeReply(int vehicles, const std::vector<int>& detailed);
 };
 
-/// How the master reaches all vehicles. The second of the two seams with virtual functions.
+/// The master's access to all vehicles. The second of the two interfaces with virtual functions.
 class Transport {
  public:
   virtual ~Transport() = default;

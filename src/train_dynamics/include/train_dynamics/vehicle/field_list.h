@@ -25,7 +25,7 @@ constexpr bool IsComputed(Presence presence, VehicleModel model, bool has_moved)
          (has_moved && (presence == Presence::kAfterStep || model == VehicleModel::kTwoD));
 }
 
-/// Whether master and vehicles tell each other a load in every exchange.
+/// Whether a load is part of every exchange between master and vehicles.
 enum class Given {
   kAlways,
   kWhereUsed,  ///< an array without numbers stands for zero on all vehicles

@@ -55,8 +55,8 @@ void ForEachSlideField(Function&& function, Structs&... structs) {
 }
 #undef TRAIN_DYNAMICS_CALL
 
-/// Slides of one wheelset for which memory that is shared with the master has room. Records that tell of more, those of
-/// intervals beyond half a second, travel by TCP.
+/// Slides of one wheelset for which memory that is shared with the master has room. Records with more slides (of
+/// intervals above half a second) are sent by TCP.
 inline constexpr int kSharedSlidesPerWheelset = 4;
 
 }  // namespace train_dynamics

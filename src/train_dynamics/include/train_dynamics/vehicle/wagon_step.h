@@ -174,7 +174,7 @@ void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& forc
   }
 }
 
-/// What acts on the wagon from outside in a step.
+/// External loads on the wagon in a step.
 template <class T>
 struct OuterForces {
   T grade;              ///< of the track [-]
@@ -283,7 +283,7 @@ ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const Ou
   return shoes;
 }
 
-/// What a step made of the wheelsets.
+/// Result of a step for the wheelsets.
 template <class T, int kPerBogie = 2>
 struct WheelsetStep {
   ShoeForces<T, kPerBogie> shoes;
@@ -344,7 +344,7 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w, const
     T push = force.x[b] - rail.normal[i] * rail.slope[i];
     T traction = outer.traction, others = outer.rolling + outer.dynamic_brake;
     if (kAll) {
-      // Set-valued at rest: what would bring the wheelset, the creep force aside, to a stand, as far as it goes.
+      // Set-valued at rest: the force that stops the wheelset, the creep force excluded, up to its limit.
       curving[i] = Clamp(w.mass_kg[b] * (1.0 / dt) * v0.x[b] + push, -outer.curving, outer.curving);
       push = push - curving[i];
       traction = w.driven[i] * outer.traction;
