@@ -11,7 +11,7 @@
 
 namespace strict_config {
 
-/// The files that were entered on the way to a node, outermost first.
+/// The chain of files that led to a node, outermost first.
 using FileChain = std::vector<std::filesystem::path>;
 
 /// Finds, reads and merges the files of which a configuration is composed.
@@ -23,8 +23,8 @@ using FileChain = std::vector<std::filesystem::path>;
 /// A list of maps may be a reference to a file that ends in .csv: a table with a row for each of its maps.
 class PartLibrary {
  public:
-  /// @param remedy  what an error about a name without any folder to look in ends with: what the program's user can do,
-  ///                as "set MY_PARTS to the folder of parts"; may be empty
+  /// @param remedy  the end of an error about a name if there is no folder to search: what the user can do, such as
+  /// "set MY_PARTS to the folder of parts"; may be empty
   PartLibrary(std::vector<std::filesystem::path> search_roots, ErrorList& errors, std::string remedy = "");
 
   /// The root of a file, or null after reporting an error. A file is parsed once, however often it is used.
@@ -32,7 +32,7 @@ class PartLibrary {
   /// The root of a text that refers to no files, or null after reporting an error under `label`.
   NodePtr OpenText(const std::string& text, const std::string& label, const KeyPath& path);
 
-  /// The list of the rows of a table of which `reference` is the file, or null after reporting an error.
+  /// The rows of the table in the file `reference` as a list, or null after reporting an error.
   NodePtr ResolveTable(const NodePtr& reference, const KeyPath& path);
 
   /// The map that `node` stands for, with its references and bases resolved, or null after reporting an
@@ -45,8 +45,8 @@ class PartLibrary {
   /// The files that were opened so far.
   std::vector<std::filesystem::path> Files() const;
 
-  /// One sentence for each name that stands for different files in the folders that are searched: which is used, and
-  /// which is not. Copies with the same content are no news.
+  /// One sentence for each name that has different files in the searched folders: which is used, and which is not.
+  /// Copies with equal content are not listed.
   const std::set<std::string>& Ambiguities() const { return ambiguities_; }
 
  private:
