@@ -3,9 +3,8 @@
 
 usage: tools/paper.py TRAIN_SIM RESULTS_FOLDER
 
-Prints Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10; writes all \
-figures
-into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
+Prints Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10; writes all
+figures into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
 """
 
 import json

@@ -1,12 +1,10 @@
 #!/usr/bin/python3
-"""Runs the ensemble of the study `couplers/paper_lugre` and draws it beside what the paper's text says of Figures 10 \
-and 11.
+"""Runs the ensemble of the study `couplers/paper_lugre` and draws it beside Figures 10 and 11 of the paper.
 
     tools/paper_lugre.py OUT_FOLDER [--starts 36] [--jobs 2]
 
-The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; a few minutes on two cores. Runs that \
-OUT_FOLDER
-holds already are not repeated.
+The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; a few minutes on two cores. Runs that
+OUT_FOLDER holds already are not repeated.
 """
 import argparse
 import concurrent.futures

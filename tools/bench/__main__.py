@@ -1,8 +1,7 @@
 """Measures the simulator on this machine: one table to the terminal, the same with words to docs/performance.md.
 
-Every section leaves its results in results/bench/, so that one alone can be measured again, and what was interrupted \
-goes on
-with `missing`.
+Every section leaves its results in results/bench/, so that one alone can be measured again, and what was interrupted
+goes on with `missing`.
 """
 import argparse
 import dataclasses

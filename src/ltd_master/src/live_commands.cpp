@@ -12,7 +12,7 @@ namespace {
 using train_dynamics::BrokenRule;
 using train_dynamics::DriverCommand;
 
-/// What a command breaks in a train, as a sentence; empty: nothing.
+/// The rule that a command breaks in a train, as a sentence; empty: none.
 std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioParams& scenario) {
   if (command.IsOfRail()) {
     using train_dynamics::VehicleModel;
@@ -68,7 +68,7 @@ std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange, std::size_
   if (next_exchange_ == 0) {  // a run that goes on from a checkpoint begins later
     for (Received& received : received_) received.exchange = exchange;
   }
-  next_exchange_ = exchange + 1;  // what comes from now on is too late for this one
+  next_exchange_ = exchange + 1;  // later commands miss this exchange
   if (received_.empty()) return {};
   std::vector<DriverCommand> due;
   for (const Received& received : received_) {

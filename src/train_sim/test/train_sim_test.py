@@ -493,7 +493,7 @@ class TrainSimTest(unittest.TestCase):
         scenario = self.write("mine.yaml", f"base: {EMERGENCY}\nexchange_interval_s: 0.01\n")
         _, warnings = self.check(scenario)
         self.assertIn(
-            "mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest that train.connection stands",
+            "mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest stable one of train.connection",
             warnings,
         )
         self.assertIn("take a shorter one", warnings)

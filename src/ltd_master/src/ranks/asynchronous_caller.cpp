@@ -69,7 +69,7 @@ class CallOfAll {
       CheckOthers();
     }
     const int last_rank = slots.last_rank();
-    if (last_rank >= 0) outcome_.last_rank = last_rank;  // else a process that was given up came in last
+    if (last_rank >= 0) outcome_.last_rank = last_rank;  // else the last reply came from a process given up
   }
 
   /// @return whether nothing more is to be expected there
@@ -113,7 +113,7 @@ class CallOfAll {
     }
   }
 
-  /// Does something with a rank; who fails in it is lost.
+  /// Executes an action on a rank; the rank is lost if it fails.
   template <class Action>
   void Attempt(int rank, Action action) {
     try {

@@ -29,7 +29,7 @@ several. It is called as the train's master would call it, on a level track:
   stability      the exchange interval H is stable with the train's connections and that mass
   slow           every reply comes within deadline_s
 
-Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged \
+Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged
 by you.
 Exit codes: 0 all passed, 1 some failed, 2 bad arguments or no vehicle node to test."""
 

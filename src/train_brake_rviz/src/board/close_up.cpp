@@ -36,7 +36,7 @@ double MeanOfWheelsets(const CloseUp::Bodies& position, int wheelsets) {
 
 std::string Kilonewtons(double force_n) { return Rounded(1e-3 * force_n, 0) + " kN"; }
 
-/// What is drawn of a vehicle: of one that is one mass, bodies of usual sizes, because it has none.
+/// The bodies drawn for a vehicle; for one given as one mass, bodies of usual sizes.
 train_dynamics::VehicleParams WithBodies(train_dynamics::VehicleParams vehicle) {
   if (!vehicle.IsOneMass()) return vehicle;
   vehicle.mass_kg.reset();

@@ -10,7 +10,7 @@ namespace {
 constexpr double kStandstill = 1e-3;
 /// It is under way again when its mean speed exceeds this [m/s]: more than any rocking.
 constexpr double kMoving = 0.1;
-/// It has rolled back when it has come back from its furthest place by more than this [m]: more than a slack train does
+/// It has rolled back when it has come back from its furthest position by more than this [m]: more than a bunched train
 /// that stretches at rest.
 constexpr double kRolledBack = 0.5;
 

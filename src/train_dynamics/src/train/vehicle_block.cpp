@@ -78,7 +78,7 @@ std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const
   return Describe("speed", s.v_mps, "m/s");
 }
 
-/// Names the first body that is not where a body can be.
+/// Names the first body whose position or speed is not possible.
 template <int kPerBogie>
 std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track, const WagonState<double, kPerBogie>& s) {
   const OverRail<double, kPerBogie> over = OverRailOf(wagon, track, s);
@@ -434,7 +434,7 @@ class BatchedBlock : public VehicleBlock {
   }
 
  private:
-  /// Those that are new.
+  /// The new ones.
   void TakePatches(const std::vector<FrictionPatchParams>& patches) {
     track_.AddPatches({patches.begin() + static_cast<std::ptrdiff_t>(patches_), patches.end()});
     patches_ = patches.size();
