@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs the paper's three scenarios with all three models and the dip, and shows what came out beside the paper.
+"""Runs the paper's three scenarios with all three models and the dip, and compares the results with the paper's.
 
 usage: tools/paper.py TRAIN_SIM RESULTS_FOLDER
 

@@ -1,4 +1,4 @@
-"""What each part that the paper's train lacks costs a train, and two threads beside other work."""
+"""Cost of each feature that the paper's train lacks, and two threads beside other work."""
 import contextlib
 import os
 import subprocess
@@ -100,7 +100,7 @@ def _wall_s(threads):
 
 @contextlib.contextmanager
 def _busy_core(core):
-    """A program that does nothing but work, on that core."""
+    """A program that only keeps that core busy."""
     program = subprocess.Popen(
         [sys.executable, "-c", "while True: pass"],
         preexec_fn=lambda: os.sched_setaffinity(0, {sorted(os.sched_getaffinity(0))[core]}),

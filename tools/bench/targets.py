@@ -1,4 +1,4 @@
-"""What we want, whether we have it, and why not."""
+"""The targets, whether they are met, and why not."""
 import machine
 from table import Table, number
 

@@ -54,7 +54,7 @@ class BagError(Exception):
 
 
 class Damage(BagError):
-    """Bytes that are no bag, or not all of one."""
+    """The bytes are not a bag, or only a part of one."""
 
 
 def unit_of(field: str) -> str:
@@ -63,7 +63,7 @@ def unit_of(field: str) -> str:
 
 
 def _comments(definition: str) -> Dict[str, str]:
-    """Of each field in the text of a message: what stands behind it, with the lines that go on."""
+    """The comment of each field in the text of a message, continuation lines included."""
     found: Dict[str, str] = {}
     field = None
     for line in definition.split("=" * 80)[0].splitlines():
@@ -82,8 +82,8 @@ def _comments(definition: str) -> Dict[str, str]:
 class Table:
     """The messages of one topic.
 
-    table["speed_mps"]: a row per message, then what the field's shape is; table.time_s: the simulated times [s] (those
-    of reception for messages without a header).
+    table["speed_mps"]: a row per message, further dimensions as the field has; table.time_s: the simulated times [s]
+    (those of reception for messages without a header).
     """
 
     def __init__(self, columns: Dict[str, numpy.ndarray], time_s: numpy.ndarray, definition: str = ""):
@@ -113,7 +113,7 @@ class Table:
         return list(self._columns)
 
     def unit(self, field: str) -> str:
-        """Of a field; empty for numbers without a unit."""
+        """Unit of a field; empty for numbers without a unit."""
         self[field]  # pylint: disable=pointless-statement
         return unit_of(field)
 
@@ -164,9 +164,8 @@ def message_class(kind: str) -> Optional[type]:
 
 
 def _must_be_installed(topic: str, kind: str, md5sum: str, definition: str, _header) -> bool:
-    """A filter of connections for rosbag, which makes a Python module of the definition in the bag and imports it:
-    whoever wrote the bag could have any program run. So nothing is read but what is defined as in the installed
-    messages."""
+    """A filter of connections for rosbag, which turns the definition in the bag into a Python module and imports it: a
+    forged bag could execute any code. So only messages with the installed definitions are read."""
     message = message_class(kind)
     # pylint: disable=protected-access
     if message is None or md5sum != message._md5sum or _words(definition) != _words(message._full_text):
@@ -179,7 +178,7 @@ def _must_be_installed(topic: str, kind: str, md5sum: str, definition: str, _hea
 
 @contextlib.contextmanager
 def _damage_named() -> Iterator[None]:
-    """What goes wrong in rosbag and genpy becomes a BagError. Only calls into them belong here."""
+    """Turns errors of rosbag and genpy into a BagError. Only for calls into these."""
     try:
         yield
     except BagError:
@@ -289,7 +288,7 @@ class BagFile:
 
     @property
     def topics(self) -> Dict[str, Topic]:
-        """Those that have messages."""
+        """The topics that have messages."""
         with self._named(), _damage_named():
             infos = self._bag.get_type_and_topic_info().topics
         return {name: Topic(info.msg_type, info.message_count) for name, info in infos.items() if info.message_count}
@@ -318,7 +317,7 @@ class BagFile:
         return [self._deserialised(topic, data) for data, _ in self._raw([topic])[topic]]
 
     def tables(self, topics: Sequence[str]) -> Dict[str, Table]:
-        """Of these topics, in one passage through the bag.
+        """Reads these topics in one pass through the bag.
         @raises BagError  if a topic holds more than one train or run, or the bag is damaged"""
         raw = self._raw(topics)
         with self._named():

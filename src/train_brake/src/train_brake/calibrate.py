@@ -2,8 +2,8 @@
 
     minimise  sum_i ((r_i(p) - v_i) / t_i)^2   over   lowest_k <= p_k <= highest_k
 
-r_i: result of run i as in its summary, v_i: its target, t_i: its tolerance, the difference that is worth as much as one
-tolerance of any other target. By scipy.optimize.least_squares (trust region reflective; derivatives by differences)."""
+r_i: result of run i as in its summary, v_i: its target, t_i: its tolerance, by which the differences of all targets are
+weighted. By scipy.optimize.least_squares (trust region reflective; derivatives by differences)."""
 
 import argparse
 import concurrent.futures
@@ -100,7 +100,7 @@ def _scenario(name: str, beside: pathlib.Path) -> Optional[pathlib.Path]:
 
 
 def read(file: pathlib.Path) -> Tuple[List[Parameter], List[Target], List[str]]:
-    """@raises StudyError  with all that is wrong"""
+    """@raises StudyError naming all errors"""
     try:
         given = yaml.safe_load(file.read_text())
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:

@@ -1,4 +1,4 @@
-"""What the report needs of a bag: the tables of one train, found by their types."""
+"""The tables of one train in a bag, found by their types."""
 
 import dataclasses
 import pathlib
@@ -15,7 +15,7 @@ from train_brake_report import paper
 
 @dataclasses.dataclass
 class Recording:
-    """What a bag holds of a train. A table is None where the bag lacks the topic."""
+    """The tables of a train in a bag. A table is None if the bag lacks the topic."""
 
     state: Optional[Table] = None
     forces: Optional[Table] = None

@@ -31,7 +31,7 @@ def _built_up(time_s: numpy.ndarray, mean: numpy.ndarray) -> str:
 
 
 def _charged(time_s: numpy.ndarray, head_pa: numpy.ndarray, tail_pa: numpy.ndarray) -> str:
-    """How long the charging of an empty train takes; nothing of a train that is charged from the start."""
+    """The charging time of an empty train; empty for a train that is charged from the start."""
     goal = FULL * float(head_pa.max())
     if tail_pa[0] >= goal or tail_pa[0] > tail_pa[1:].min(initial=numpy.inf):
         return ""

@@ -1,4 +1,4 @@
-"""Where the train's energy goes: the ledger over time, and what it does not account for."""
+"""The train's energy: the ledger over time, and its residual."""
 
 import numpy
 
@@ -34,8 +34,8 @@ def _why_not(run: Run) -> str:
 
 
 def turned_over_j(run: Run) -> float:
-    """What the residual is measured by, as residual_share of summary.json: the largest of what was dissipated, what the
-    stored energy changed by, and the work of gravity and traction, at the last ledger."""
+    """The reference of the residual, as for residual_share in summary.json: the largest of energy dissipated, change of
+    stored energy, and work of gravity and traction, at the last ledger."""
     last = run.recording.ledger[-1]
     stored = last.kinetic_j + last.potential_j - last.initial_j
     return max(abs(sum(last.dissipated_j)), abs(stored), abs(last.gravity_work_j) + abs(last.traction_work_j))

@@ -34,8 +34,8 @@ class Quantity:
     caption: str = ""
 
     def of(self, run: Run) -> Tuple[numpy.ndarray, numpy.ndarray]:
-        """(times [s], values [record, vehicle] in the unit) without records that do not know it: in LTD none knows
-        creepage, and the first record of any model knows no acceleration."""
+        """(times [s], values [record, vehicle] in the unit) without records that lack it: LTD has no creepage, and the
+        first record of any model has no acceleration."""
         table = getattr(run.recording, self.table)
         values = numpy.float32(self.factor) * table[self.field]
         known = numpy.isfinite(values).all(axis=1)
