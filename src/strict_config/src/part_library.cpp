@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxChain = 64;  ///< files entered on the way to a value
+constexpr std::size_t kMaxChain = 64;  ///< longest chain of files that lead to a value
 constexpr std::size_t kListedNames = 12;
 constexpr const char* kExtension = ".yaml";
 

@@ -153,7 +153,7 @@ class Reader {
     NodePtr map;    ///< null: an empty map
     Source source;  ///< where an error about a missing key of it points
     KeyPath path;
-    FileChain chain;  ///< the files entered on the way here
+    FileChain chain;  ///< the files that led here
   };
   enum class Absent { kReadAsEmpty, kSkip };
 

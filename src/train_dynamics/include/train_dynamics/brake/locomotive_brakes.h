@@ -60,7 +60,7 @@ class LocomotiveBrakes {
  public:
   struct Locomotive {
     int vehicle;             ///< index from 0
-    double command_delay_s;  ///< of the driver's commands on their way to it
+    double command_delay_s;  ///< transmission delay of the driver's commands to it
   };
 
   LocomotiveBrakes() = default;  ///< of no locomotives: nothing acts

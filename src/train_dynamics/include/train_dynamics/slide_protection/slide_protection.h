@@ -55,7 +55,7 @@ struct SlideProtectionParams {
              "a_max, bound of the estimated reference speed's fall [A]");
     v.Number("least_speed_kmh", least_speed_kmh, kNonNegative, "reference speed below which all valves fill");
     v.Number("longest_vent_s", longest_vent_s, kPositive,
-             "longest vent in one piece; then the valve fills until no vent is asked for [M]");
+             "longest uninterrupted vent; then the valve fills until the vent demand ends [M]");
     v.Group("valve", valve, "valve and cylinder behind it");
     if (controller == SlideController::kThreshold3State)
       v.Group("threshold_3state", threshold_3state, "thresholds of that controller");

@@ -37,7 +37,7 @@ struct SlipControlParams {
 /// @param speed_mps        v, of the vehicle: the ideal reference
 /// @param wheel_speed_mps  u, of the tread
 inline double NextReduction(const SlipControlParams& p, double reduction, double speed_mps, double wheel_speed_mps) {
-  // Traction pulls forwards: treads that are faster than the vehicle slip, whichever way it rolls.
+  // Traction pulls forwards: treads that are faster than the vehicle slip, whether it rolls forwards or backwards.
   const double slip_mps = wheel_speed_mps - speed_mps;
   const double target_mps = Max(p.least_slip_mps, p.target_creepage * std::abs(speed_mps));
   const double asked = Clamp(p.gain_per_mps * (slip_mps - target_mps), 0.0, 1.0);

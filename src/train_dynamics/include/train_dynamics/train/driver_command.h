@@ -87,7 +87,7 @@ struct DriverCommand {
       v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
     if (IsOfLocomotives())
       v.Number("notch", notch, Range{0.0, 100.0, false, false},
-               "of throttle or dynamic brake; 0: off; each ends what the other has asked for");
+               "of throttle or dynamic brake; 0: off; each cancels the other");
     if (kind == DriverCommandKind::kIndependentBrake)
       v.Number("pressure_kpa", pressure_kpa, kNonNegative,
                "of the locomotives' cylinders by their own brake; 0: released");

@@ -24,7 +24,7 @@ struct LocomotiveCommand {
     v.Number("time_s", time_s, kNonNegative, "when the command is given");
     v.Choice("kind", kind,
              {{"throttle", LocomotiveCommandKind::kThrottle}, {"dynamic_brake", LocomotiveCommandKind::kDynamicBrake}},
-             "throttle or dynamic_brake; each ends what the other has asked for");
+             "throttle or dynamic_brake; each cancels the other");
     v.Number("notch", notch, Range{0.0, 100.0, false, false}, "0: off");
     v.Integers("vehicles", vehicles, Range{-100000, 100000, false, false},
                "locomotives that obey, from 1, or from -1 for the last; none: all");

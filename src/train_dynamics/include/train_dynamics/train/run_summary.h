@@ -47,7 +47,7 @@ class RunSummary {
   /// A time at which the train came to a stand.
   struct Stop {
     double time_s, distance_m;
-    double until_s;  ///< when it was under way again; NaN: it stands still
+    double until_s;  ///< when it moved again; NaN: it is still at rest
   };
 
   const std::vector<Stop>& stops() const { return stops_; }

@@ -10,8 +10,8 @@
   X(vehicle, "1", "number of the vehicle in the train, from 1")                                         \
   X(wheelset, "1", "number of the wheelset in the vehicle, from 1 at its front")                        \
   X(start_s, "s", "when the creepage rose above 0.3")                                                   \
-  X(end_s, "s", "when it fell below; of a slide that still goes on: the time of this message")          \
-  X(is_over, "1", "1; 0 of a slide that still goes on")                                                 \
+  X(end_s, "s", "when it fell below; of an ongoing slide: the time of this message")                    \
+  X(is_over, "1", "1; 0 of an ongoing slide")                                                           \
   X(start_m, "m", "position of the wheelset along the track at its start")                              \
   X(end_m, "m", "... at its end")                                                                       \
   X(slid_m, "m", "distance the tread slid over the rail, >= 0")                                         \

@@ -334,7 +334,7 @@ void PneumaticBrake::Receive(SourceState& source, double now_s) const {
   }
 }
 
-// The equalising reservoir on its way to its goal; overcharged after a release, and slowly down from there.
+// The equalising reservoir moves to its goal; after a release it is overcharged, and falls slowly from there.
 void PneumaticBrake::Equalise(SourceState& source, double now_s) const {
   const DriversValveParams& valve = params_.drivers_valve;
   const double charged_pa = params_.charged_pressure_kpa * 1e3;

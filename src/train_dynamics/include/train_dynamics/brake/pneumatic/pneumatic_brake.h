@@ -128,7 +128,7 @@ struct PipeSourceParams {
               "must be > radio_lost_from_s", {"radio_lost_from_s"});
     }
     if (kind == PipeSourceKind::kEndOfTrain) {
-      v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only tells");
+      v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only reports");
       v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false}, "opening of the device's vent [A]");
     }
     if (kind == PipeSourceKind::kRemote)
