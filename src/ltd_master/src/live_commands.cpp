@@ -65,7 +65,7 @@ std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& messa
 std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange, std::size_t patches) {
   const std::lock_guard<std::mutex> lock(mutex_);
   patches_ = patches;
-  if (next_exchange_ == 0) {  // a run that goes on from a checkpoint begins later
+  if (next_exchange_ == 0) {  // a resumed run begins later
     for (Received& received : received_) received.exchange = exchange;
   }
   next_exchange_ = exchange + 1;  // later commands miss this exchange

@@ -278,7 +278,7 @@ int MasterNode::Run() {
   std::string rank_fault;
   try {
     Go(run);
-  } catch (const WaitInterrupted&) {  // by what Ending tells
+  } catch (const WaitInterrupted&) {  // for the reason that Ending gives
   } catch (const RankFailure& e) {
     if (!Ending()) rank_fault = e.what();
   } catch (const DriverFailure& e) {

@@ -40,7 +40,7 @@ std::size_t FindKey(const std::string& text, const std::string& key) {
   return at;
 }
 
-/// Whether text in UTF-8 has characters that command a terminal (but for line feeds and tabs): control characters of
+/// Whether text in UTF-8 has characters that control a terminal (except line feeds and tabs): control characters of
 /// ASCII, those from U+0080 to U+009F, and those that turn the direction of writing.
 bool HasControlCharacter(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -418,7 +418,7 @@ TEST(Readhesion, WheelsThatStandStayLockedWhereTheirShoesHoldThem) {
     EXPECT_NEAR(both[i], both_s[i], 0.03 * both_s[i] + 0.01) << "wheelset " << i + 1;
     EXPECT_NEAR(tread[i], tread_s[i], 0.03 * tread_s[i] + 0.01) << "wheelset " << i + 1;
   }
-  // With the friction of the vehicle's speed they turn again: nothing locked above 3 km/h.
+  // With the friction at the vehicle's speed the wheels turn again: none is locked above 3 km/h.
   for (const double locked : times(BrakeReaction::kNone, FrictionSpeed::kVehicle, 3.0 / 3.6)) {
     EXPECT_EQ(locked, 0.0);
   }

@@ -66,7 +66,7 @@ class ScenarioRules : public ::testing::Test {
     for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;) text.erase(at, prefix.size());
     return text;
   }
-  /// Replaces a text that the file has once.
+  /// Replaces a text that occurs once in the file.
   void Edit(const std::string& name, const std::string& before, const std::string& after) const {
     std::ifstream in(root_ / name);
     std::string text((std::istreambuf_iterator<char>(in)), {});

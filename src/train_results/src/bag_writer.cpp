@@ -207,7 +207,7 @@ int BagWriter::AddConnection(const std::string& topic, const std::string& type, 
   return static_cast<int>(id);
 }
 
-/// Appends a message's record but for its data. @return where these belong
+/// Appends a message's record without its data. @return where the data belong
 std::uint8_t* BagWriter::BeginMessage(int topic, ros::Time time, std::uint32_t size) {
   if (chunk_.empty()) open_.begin = time;
   open_.end = time;

@@ -109,7 +109,7 @@ void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule&
                                         strict_config::Write(scenario));
 }
 
-/// What recorders write and go on with.
+/// The recorders' data for continuing a run.
 bool IsRecord(const std::string& name) {
   static const std::regex pattern("train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);

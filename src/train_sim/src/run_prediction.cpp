@@ -111,7 +111,7 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
     batch_s.push_back(this_batch_s);
     this_batch_s = 0.0;
   };
-  // Ends with a batch, but for the run's last.
+  // Ends with a batch, except at the end of the run.
   hooks.ends = [&] { return this_batch_s == 0.0 && (master.exchange() >= kExchanges || all_s > kLongest); };
   run.Go(hooks);
   prediction.fault = run.fault();

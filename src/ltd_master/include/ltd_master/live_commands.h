@@ -22,7 +22,7 @@ class LiveCommands {
   /// @throws std::invalid_argument for an unknown kind, a number out of range, or an unknown locomotive; names it
   train_dynamics::DriverCommand Judge(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) const;
 
-  /// @return the exchange at whose start it is given at the earliest
+  /// @return the earliest exchange at the start of which it can be given
   /// @throws std::invalid_argument as Judge, and if there are too many patches of rail
   std::uint64_t Receive(const train_brake_msgs::DriverCommand& message);
 

@@ -37,9 +37,9 @@ namespace ltd_master {
 /// The private parameters of the node; launch/train.launch documents them.
 struct MasterOptions {
   std::string scenario;
-  int vehicles = 0;   ///< number of vehicles that the launch file expects; 0 = any
-  int ranks = 0;      ///< wagon nodes; 0 = the vehicles are in the master's own process
-  std::string nodes;  ///< wagon nodes that the user of the launch file has asked for; "auto" or empty: any number
+  int vehicles = 0;          ///< number of vehicles that the launch file expects; 0 = any
+  int ranks = 0;             ///< wagon nodes; 0 = the vehicles are in the master's own process
+  std::string nodes;         ///< wagon nodes that the user requested from the launch file; "auto" or empty: any number
   bool global_clock = true;  ///< this train's time is also that of /clock
   std::vector<std::string> overrides;
   train_results::OutputOptions output;

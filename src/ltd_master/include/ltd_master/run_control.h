@@ -64,7 +64,7 @@ class RunControl {
   bool is_moving_ = false;       ///< an exchange is under way
   double simulated_s_ = 0.0;     ///< at the end of the last exchange, or the beginning of the one under way
   std::uint64_t completed_ = 0;  ///< exchanges
-  std::uint64_t goal_ = 0;       ///< a paused run goes on until `completed_` is this
+  std::uint64_t goal_ = 0;       ///< a paused run continues until `completed_` is this
   std::uint64_t decisions_ = 0;  ///< calls of Pause and Resume: each ends all steps
   double real_time_factor_;
   std::optional<PaceMark> pace_mark_;  ///< none: the next exchange sets it

@@ -33,7 +33,7 @@ class SimulatedClock {
   /// Sets use_sim_time, once more after a restart of the ROS master.
   void TellUse() const;
 
-  /// Whether a train in this namespace owns /clock unless told otherwise.
+  /// Whether a train in this namespace owns /clock by default.
   static bool OwnsGlobalClock(const std::string& train_namespace) { return train_namespace == "/train"; }
 
  private:

@@ -21,7 +21,7 @@ constexpr double kHandshake = 1.0;  // [s] for a node that has advertised to acc
 
 using Links = std::vector<std::unique_ptr<ServiceLink>>;  // [rank] null: not connected
 
-/// One call of all ranks: in the memory that some share with the master, through links to the others.
+/// One call of all ranks: through shared memory for ranks that have a slot, through links for the others.
 template <class Service>
 class CallOfAll {
  public:

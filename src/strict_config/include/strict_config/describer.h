@@ -30,7 +30,7 @@ struct KeyDescription {
   enum class Kind { kNumber, kInteger, kFlag, kText, kChoice, kNumbers, kIntegers, kGroup, kList, kPart, kParts };
 
   std::string key;
-  const void* type = nullptr;  ///< differs where one key stands for different structs with different values of another
+  const void* type = nullptr;  ///< differs if one key has different structs, depending on the value of another key
   Kind kind = Kind::kNumber;
   std::string meaning;
   Range range{};                        ///< of numbers

@@ -17,10 +17,10 @@ using FileChain = std::vector<std::filesystem::path>;
 /// Finds, reads and merges the files of which a configuration is composed.
 ///
 /// A part is a map, or a reference to a file that holds one. A reference with a '/' or ending in .yaml or
-/// .yml is a path relative to the file that it stands in. Any other is a name: NAME.yaml in a folder called
-/// `kind`, looked for in the folder of the referring file, in each of its ancestors, and in the search roots.
-/// A map may start from another part of its kind, `base: REFERENCE`, and change what it needs.
-/// A list of maps may be a reference to a file that ends in .csv: a table with a row for each of its maps.
+/// .yml is a path relative to the file that contains it. Any other is a name: NAME.yaml in a folder called `kind`,
+/// looked for in the folder of the referring file, in each of its ancestors, and in the search roots. A map may start
+/// from another part of its kind, `base: REFERENCE`, and change what it needs. A list of maps may be a reference to a
+/// file that ends in .csv: a table with a row for each of its maps.
 class PartLibrary {
  public:
   /// @param remedy  the end of an error about a name if there is no folder to search: what the user can do, such as
@@ -35,8 +35,7 @@ class PartLibrary {
   /// The rows of the table in the file `reference` as a list, or null after reporting an error.
   NodePtr ResolveTable(const NodePtr& reference, const KeyPath& path);
 
-  /// The map that `node` stands for, with its references and bases resolved, or null after reporting an
-  /// error.
+  /// The map that `node` refers to, with its references and bases resolved, or null after reporting an error.
   /// @param kind   the folder in which names are looked for
   /// @param path   of the node in the configuration, for messages
   /// @param chain  the files that must not be entered again; those that are entered are appended
@@ -56,7 +55,7 @@ class PartLibrary {
   /// @param key  the path of the reference itself: that of the part, or of its base
   NodePtr ResolveReference(const NodePtr& reference, const KeyPath& key, const std::string& kind, const KeyPath& path,
                            FileChain& chain);
-  /// The file that a reference stands for, or an empty path after reporting an error.
+  /// The file that a reference names, or an empty path after reporting an error.
   std::filesystem::path Locate(const Node& reference, const KeyPath& key, const std::string& kind);
   std::filesystem::path LocateName(const Node& reference, const KeyPath& key, const std::string& kind);
   void NoteAmbiguity(const std::filesystem::path& used, const std::filesystem::path& other);

@@ -91,7 +91,7 @@ class Reader {
 
   /// All files of the configuration that were read so far.
   std::vector<std::filesystem::path> Files() const { return session_.library.Files(); }
-  /// Names that stand for different files; see PartLibrary.
+  /// Names that have several different files; see PartLibrary.
   const std::set<std::string>& Ambiguities() const { return session_.library.Ambiguities(); }
 
   template <class Enum>
@@ -241,7 +241,7 @@ class Reader {
 
   ReadSession& session_;
   const Place place_;
-  std::vector<std::string> known_;  ///< the keys that were asked for
+  std::vector<std::string> known_;  ///< the keys that were requested
 
   /// A number as a rule may show it.
   struct Shown {

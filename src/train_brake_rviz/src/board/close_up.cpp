@@ -220,8 +220,8 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     arrow({contact.right, contact.up - 0.1}, {contact.right + kFrictionScale * creep, contact.up - 0.1},
           palette::kOrange);
 
-    // The shoe stands on the bogie's inner side of the wheel. Its friction acts along the tread: against a
-    // forward turning wheel, upwards on the front half of the wheel and downwards on the rear half.
+    // The shoe is on the bogie's inner side of the wheel. Its friction acts along the tread: against a forward turning
+    // wheel, upwards on the front half of the wheel and downwards on the rear half.
     const bool on_front_half = i % 2 == 1;
     const double side = (on_front_half ? -1.0 : 1.0) * scale_ * radius;
     const double shoe = (on_front_half ? 1.0 : -1.0) * kFrictionScale * detail.output.shoe_force_n[i];

@@ -267,7 +267,7 @@ void AddSteps(const std::vector<RoutePointParams>& points, const Value& value, s
   }
 }
 
-/// The grades between heights, and level track behind the last. (Before the first the caller sees to that.)
+/// The grades between heights, and level track behind the last. (Before the first, the caller sets level track.)
 std::vector<StepValue> GradesBetween(const std::vector<HeightParams>& heights) {
   std::vector<StepValue> steps;
   if (heights.empty()) return steps;

@@ -109,7 +109,7 @@ class EqualVehicles : public VehicleBatch<Vehicle> {
   using VehicleType = Vehicle;
   using VehicleBatch<Vehicle>::VehicleBatch;
 
-  /// As VehicleBatch::Advance, in the exchange that is asked for.
+  /// As VehicleBatch::Advance, in the requested exchange.
   bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads, const ReplyPlaces& reply,
                bool with_output) {
     return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, with_output);

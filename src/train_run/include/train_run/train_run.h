@@ -40,7 +40,7 @@ struct RunHooks {
 class TrainRun {
  public:
   /// Keeps references: all but the brake must outlive the run.
-  /// @param from    the checkpoint from which it goes on; null: it begins at time 0
+  /// @param from    the checkpoint from which it is resumed; null: it begins at time 0
   /// @param output  its results; null: none are written
   TrainRun(const train_dynamics::ScenarioParams& scenario, const train_dynamics::Consist& consist,
            train_dynamics::Transport& transport, train_dynamics::BrakeSystem brake,
@@ -75,7 +75,7 @@ class TrainRun {
   const train_dynamics::RunSummary& summary() const { return summary_; }
   /// See RunSummary::SetTwin.
   void SetTwin(train_dynamics::TwinRun twin) { summary_.SetTwin(std::move(twin)); }
-  /// When it begins [s]: later than 0 if it goes on from a checkpoint.
+  /// When it begins [s]: later than 0 if it is resumed from a checkpoint.
   double start_s() const;
   /// Whether Go has been interrupted, and continues only to the next record.
   bool ending() const { return ending_; }

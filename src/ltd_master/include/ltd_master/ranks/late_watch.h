@@ -10,7 +10,7 @@
 
 namespace ltd_master {
 
-/// A rank did not start, died, was late, refused a request or sent an invalid reply. The run cannot go on.
+/// A rank did not start, died, was late, refused a request or sent an invalid reply. The run cannot continue.
 ///
 /// what() names the rank, its vehicles and the exchange.
 class RankFailure : public std::runtime_error {

@@ -226,7 +226,7 @@ struct OneSurface {
 };
 
 /// The surface outside of every patch: the vehicle's own.
-/// @tparam T  only tells the instances of kernels apart
+/// @tparam T only distinguishes the instances of kernels
 /// @param vehicle  must outlive what is returned
 template <class T>
 OneSurface OwnSurface(const AdhesionParams& vehicle) {

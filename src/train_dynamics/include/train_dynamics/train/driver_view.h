@@ -33,8 +33,8 @@ struct DriverView {
   std::vector<StationParams> stations_ahead;  ///< those that position_m has not passed, likewise
   double throttle_notch = 0.0, dynamic_brake_notch = 0.0;  ///< that the first locomotive obeys
   double effort_n = 0.0;                ///< at the rims of all locomotives: traction positive, dynamic brake negative
-  double reduction_kpa = 0.0;           ///< of the brake pipe, as last asked for; 0 after a release
-  bool emergency = false;               ///< was asked for, and no release since
+  double reduction_kpa = 0.0;           ///< of the brake pipe, as last commanded; 0 after a release
+  bool emergency = false;               ///< was commanded, and no release since
   double brake_pipe_kpa = 0.0;          ///< gauge, at the first vehicle; NaN: the brake has no pipe that is computed
   double cylinder_kpa = 0.0;            ///< gauge, of the first vehicle
   double mean_cylinder_kpa = 0.0;       ///< gauge, of all vehicles

@@ -4,7 +4,7 @@
 
 namespace train_dynamics {
 
-/// All vehicles in this process, but for external ones, shared out over a fixed number of threads; any number gives the
+/// All vehicles in this process, except external ones, distributed over a fixed number of threads; any number gives the
 /// same bits.
 class InProcessTransport : public Transport {
  public:

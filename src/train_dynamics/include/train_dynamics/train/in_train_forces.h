@@ -76,8 +76,8 @@ class InTrainForces {
  private:
   /// Connections of one type, at equal distances in the train.
   struct Row {
-    int at;     ///< the first, in its set
-    int place;  ///< the first, in the train
+    int at;     ///< index of the first connection in its set
+    int place;  ///< index of the first connection in the train
     int stride, count;
   };
   /// The connections of one type, side by side, filled up to whole packs of lanes.

@@ -68,7 +68,7 @@ struct VehicleRecords : RecordArrays {
   VehicleRecords(int vehicles, const std::vector<int>& detailed);
 };
 
-/// All arrays are indexed by vehicle; those of a record stay as they are when none was asked for.
+/// All arrays are indexed by vehicle; those of a record are unchanged if none was requested.
 struct ExchangeReply : ReplyArrays, VehicleRecords {
   VehicleFault fault;                 ///< the first in the order of the vehicles
   std::vector<VehicleEnergy> energy;  ///< with a ledger
@@ -91,13 +91,13 @@ class Transport {
   /// Brings all vehicles to a state that a snapshot holds, at the beginning of an exchange; replies as Start.
   /// @throws SnapshotError if the snapshot does not fit
   virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot, ExchangeReply& reply) = 0;
-  /// Whether snapshots can be asked for; known once it has started.
+  /// Whether snapshots can be requested; known after the start.
   virtual bool GivesSnapshots() const { return true; }
   /// One exchange with every vehicle; returns when all have replied.
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };
 
-/// A run that cannot go on: names the vehicle, the quantity and the time.
+/// A run that cannot continue: names the vehicle, the quantity and the time.
 class SimulationFault : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

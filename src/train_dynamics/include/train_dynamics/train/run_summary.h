@@ -44,7 +44,7 @@ class RunSummary {
   const ScenarioParams& scenario() const { return scenario_; }
   const std::optional<TwinRun>& twin() const { return twin_; }
 
-  /// A time at which the train came to a stand.
+  /// A stop of the train.
   struct Stop {
     double time_s, distance_m;
     double until_s;  ///< when it moved again; NaN: it is still at rest

@@ -41,7 +41,7 @@ struct TrainCheckpoint {
   std::vector<double> driver;           ///< CommandSchedule::Memory
   std::vector<double> built_in_driver;  ///< BuiltInDriverState::ForEachField; empty without one
   std::vector<double> summary;          ///< RunSummary::Memory
-  Bytes output;                         ///< what the recorders of the run need to go on
+  Bytes output;                         ///< what the run's recorders need to continue
 };
 
 /// @throws SnapshotError unless there is one row per vehicle

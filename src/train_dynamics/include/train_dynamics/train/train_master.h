@@ -27,10 +27,10 @@ struct TrainRecord {
   double mean_speed_mps = 0.0;   ///< of the vehicles' momentum
   double mean_position_m = 0.0;  ///< of the vehicles' masses
   VehicleRecords vehicles;
-  std::vector<SlideEvent> slides;  ///< that have ended since the last record; with a ledger, those that go on, too
-  std::vector<double> acceleration_mps2;     ///< [vehicle] mean over the record interval; NaN at time 0
-  LoadArrays held;                           ///< the loads of the interval that ended
-  std::vector<double> coupler_extension_m;   ///< [connection]
+  std::vector<SlideEvent> slides;           ///< that have ended since the last record; with a ledger, also ongoing ones
+  std::vector<double> acceleration_mps2;    ///< [vehicle] mean over the record interval; NaN at time 0
+  LoadArrays held;                          ///< the loads of the interval that ended
+  std::vector<double> coupler_extension_m;  ///< [connection]
   std::vector<double> cylinder_pressure_pa;  ///< [vehicle] at time_s
   BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
@@ -60,7 +60,7 @@ class TrainMaster {
   /// Brings the vehicles and the books to the state of a checkpoint instead. Its record is not shown again.
   /// @throws SnapshotError if the checkpoint is not one of such a train
   void Resume(const TrainCheckpoint& checkpoint);
-  /// Whether checkpoints can be asked for; known once it has started.
+  /// Whether checkpoints can be requested; known after the start.
   bool GivesCheckpoints() const { return transport_.GivesSnapshots(); }
   /// Requests a checkpoint of the next exchange, which must be one that ends with a record.
   void AskForCheckpoint();

@@ -49,7 +49,7 @@ class SlideWatch {
   static constexpr int kFollowed = sizeof(Followed) / sizeof(double);
   struct PerVehicle {
     std::array<Followed, kWheelsets> wheelset;
-    std::vector<SlideEvent> ended;  ///< not told yet
+    std::vector<SlideEvent> ended;  ///< not reported yet
   };
   struct Motion;
 

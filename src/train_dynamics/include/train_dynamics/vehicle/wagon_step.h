@@ -238,7 +238,7 @@ void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& oute
 template <class T, int kPerBogie = 2>
 struct ShoeForces {
   std::array<T, kWheelsetsOf<kPerBogie>> turning;   ///< on the wheels as they turn
-  std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels that stand, >= turning
+  std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels at rest, >= turning
 };
 
 /// The same by any rigging and law of friction, and where each wheelset has a cylinder pressure of its own.
@@ -463,7 +463,7 @@ void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   }
 }
 
-/// Books the work of a step but for the torques: force x mean rate x dt, element by element.
+/// Books the work of a step, except the torques': force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
 template <bool kAll, class T, int kPerBogie>
 void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,

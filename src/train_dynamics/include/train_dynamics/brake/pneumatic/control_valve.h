@@ -257,8 +257,8 @@ class ControlValve {
   /// V let out to the atmosphere [J]
   ///
   /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills
-  /// it again when the handle is let go. Graduated release lowers its control reservoir to the pipe's pressure, and so
-  /// releases in its release time; so does ECP while the handle is held.
+  /// it again when the handle is released. Graduated release lowers its control reservoir to the pipe's pressure, and
+  /// so releases in its release time; so does ECP while the handle is held.
   double BailOff(ControlValveState& s, double pipe_pa) const;
 
   /// p V of all air that the state holds [J].
