@@ -155,7 +155,7 @@ TEST(BrakeReaction, ShoesOnTheCarbodyLeaveTheBogiesAlone) {
   const auto within = [&](int k) { return m[k].normal[0] - m[k].normal[1]; };
   const auto between = [&](int k) { return m[k].normal[0] + m[k].normal[1] - m[k].normal[2] - m[k].normal[3]; };
   const double s = m[0].shoe[0];
-  // r S / l_w more on each wheelset of a bogie and less on its other, less some ten per cent.
+  // The reaction loads one wheelset of each bogie by r S / l_w and unloads the other one, less about ten per cent.
   EXPECT_NEAR(within(0) - within(2), 2.0 * 0.485 * s / 0.975, 0.2 * s);
   EXPECT_LT(within(0) - within(2), 2.0 * 0.485 * s / 0.975);
   EXPECT_LT(std::abs(within(1) - within(2)), 0.1 * s);
