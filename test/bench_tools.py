@@ -43,7 +43,7 @@ HURRIED = functools.partial(measure.google_benchmark, repetitions=2, min_time_s=
 
 
 def bench_main():
-    """tools/bench/__main__.py: its name is this file's, too."""
+    """tools/bench/__main__.py, loaded by path because this file is called __main__, too."""
     spec = importlib.util.spec_from_file_location("bench_main", BENCH / "__main__.py")
     main = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(main)

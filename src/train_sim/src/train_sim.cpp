@@ -86,7 +86,7 @@ CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std
   return input;
 }
 
-/// @throws std::invalid_argument naming the likely one
+/// @throws std::invalid_argument if the command is unknown; names the likely one
 void RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
   const std::string given = argc > 1 ? argv[1] : "";
   if (given.empty() || given[0] == '-') return;

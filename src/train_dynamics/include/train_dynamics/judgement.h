@@ -15,7 +15,7 @@ struct BrokenRule {
   std::vector<std::string> reads;  ///< paths of what it reads besides `key`; "[]" in a path: all entries of a list
 };
 
-/// Tells a visitor of them.
+/// Reports the broken rules to a visitor.
 template <class Visitor>
 void Check(const std::vector<BrokenRule>& broken, Visitor& v) {
   for (const BrokenRule& rule : broken) {

@@ -37,8 +37,8 @@ class NodeParameters {
   double NonNegative(const std::string& name, double fallback);
   /// Whether the parameter is the first of its two words, which is also its default.
   bool IsFirstOf(const std::string& name, const std::string& first, const std::string& second);
-  /// One of these words, of which the first is the default. Where `true` and `false` are among them, the values of that
-  /// type are, too.
+  /// One of these words, the first being the default. If `true` and `false` are among them, Boolean values are
+  /// accepted, too.
   std::string Choice(const std::string& name, const std::vector<std::string>& words);
   /// All parameters that exist, known to the node or not.
   std::vector<std::string> Names() const;

@@ -104,7 +104,7 @@ class InTrainForces {
     std::vector<double> memory;  ///< of the law, [field][connection]
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
     std::vector<double> stored_j, dissipated_j;
-    std::vector<double> parted_s;  ///< < 0: has not
+    std::vector<double> parted_s;  ///< time of parting; < 0: not parted
   };
   /// Where a connection of the train is.
   struct Place {
