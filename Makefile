@@ -174,6 +174,10 @@ reference: build ## renew what is made from the code: docs/configuration.md, res
 
 # Python files; those of programs have no ending.
 python_sources = git ls-files '*.py' 'src/train_brake/scripts/*' 'src/train_brake_examples/scripts/*'
+
+# Lines of code that are wider than .editorconfig says. (Tables, pages and launch files have no limit.)
+line_width = LC_ALL=C.UTF-8 git grep -nE '^.{121,}' -- '*.h' '*.cpp' '*.py' '*.sh' '*.yaml' '*.msg' '*.srv' '*.cmake' '*CMakeLists.txt' 'src/*/scripts/*'
+
 .PHONY: format
 format: ## format the code in place (clang-format 14, black)
 	@$(sources) | xargs clang-format -i
@@ -184,6 +188,7 @@ check-style: ## complain about what is not formatted, misspelt, or doubtful in s
 	@tools/install_packages.sh packages_style.txt
 	@$(sources) | xargs clang-format --dry-run --Werror
 	@$(python_sources) | xargs black --quiet --check || { echo "make format mends these:"; $(python_sources) | xargs black --check; }
+	@! $(line_width) || { echo "check-style: lines of more than 120 characters, see above" >&2; exit 1; }
 	@git ls-files | grep -v '\.csv$$' | xargs codespell -I tools/spelling_ignored.txt
 	@git ls-files '*.sh' .ci/run | xargs shellcheck -S warning
 	@catkin_lint --offline -W1 --quiet src

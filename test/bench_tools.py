@@ -43,7 +43,7 @@ HURRIED = functools.partial(measure.google_benchmark, repetitions=2, min_time_s=
 
 
 def bench_main():
-    """tools/bench/__main__.py: its name is this file's, too."""
+    """tools/bench/__main__.py, loaded by path because this file is called __main__, too."""
     spec = importlib.util.spec_from_file_location("bench_main", BENCH / "__main__.py")
     main = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(main)
@@ -204,7 +204,8 @@ class BenchTools(unittest.TestCase):
                 program = programs / f"takes_{seconds}"
                 program.write_text(
                     f"#!/bin/sh\nsleep {seconds}; : $((n = 0)); while [ $n -lt 3000 ]; do n=$((n + 1)); done\n"
-                    'while [ $# -gt 1 ]; do [ "$1" = --out ] && echo \'{"state_digest": "1"}\' > "$2/summary.json"; shift; done\n'
+                    'while [ $# -gt 1 ]; do [ "$1" = --out ] && echo \'{"state_digest": "1"}\' > "$2/summary.json"; '
+                    "shift; done\n"
                     "exit 0\n"
                 )
                 program.chmod(0o755)

@@ -3,18 +3,20 @@
 
 usage: docs_pages.py [--guide] [--short | --long] [--gtest_output=xml:FILE] [TestCase.test ...]
 
-A fenced block of `bash` or `python` is run; the blocks of a page one after the other, in one shell, in a folder that looks like
-the workspace with its environment sourced. Comments in the page, which no reader sees, say what is different:
+A fenced block of `bash` or `python` is run; the blocks of a page one after the other, in one shell, in a folder that
+looks like the workspace with its environment sourced. Comments in the page, which no reader sees, say what is
+different:
 
     <!-- commands: long -->              run by `make test-docs-long` only: in a clean clone that the page itself builds
-    <!-- commands: background -->        in a terminal of its own, until the page's end; the next block waits for its train
+    <!-- commands: background -->        in a terminal of its own until the page ends; the next block waits for its
+                                         train
     <!-- commands: elsewhere REASON -->  cannot be run here; REASON is one of ELSEWHERE
     <!-- commands: fails -->             each line ends with an error, as the page says
     <!-- commands: without LINE: REASON -->  lines that begin so are left out, likewise
     <!-- run: COMMAND -->                done before what follows, for instance a run that the page takes for granted
 
-A block of `text` behind one of commands shows what they print: its lines must be in their output, in this order ("..." stands
-for what is left out).
+A block of `text` behind one of commands shows what they print: its lines must be in their output, in this order ("..."
+stands for what is left out).
 """
 import contextlib
 import os
@@ -42,7 +44,8 @@ ELSEWHERE = {
     "noetic": "needs ROS in /opt/ros/noetic",
 }
 PROGRAMS = (
-    "apt-get export make parallel ros2 rosbag rosbash roscore roslaunch rosmsg rosnode rosrun rosservice rosparam rostopic "
+    "apt-get export make parallel ros2 rosbag rosbash roscore roslaunch rosmsg rosnode rosrun rosservice rosparam "
+    "rostopic "
     "rsync source ssh sudo train_sim dpkg"
 ).split()
 LONG, GUIDE = (

@@ -79,8 +79,8 @@ class Matrix(LaunchTest):
         )
 
     def launch_nodes(self, *nodes, behind="", **parameters):
-        """A train of two ranks with those nodes (XML), which are not respawned. @param behind  redirections of its master
-        in the shell. @param parameters  of its master"""
+        """A train of two ranks with those nodes (XML), which are not respawned. @param behind  redirections of its
+        master in the shell. @param parameters  of its master"""
         values = {"scenario": SHORT_TRAIN, "ranks": 2, "real_time_factor": 1.0, "set": self.settings, **parameters}
         text = "".join(f'<param name="{name}" value="{value}"/>' for name, value in values.items())
         file = self.folder / "nodes.launch"
@@ -115,7 +115,10 @@ class Matrix(LaunchTest):
 
     def launch_faulty(self, fault, exchange, **parameters):
         """The second rank is a faulty one, in front of a sound one."""
-        faulty = f'<node pkg="train_brake" type="faulty_rank.py" name="wagon_004" args="/train/sound {fault} {exchange}" output="screen"/>'
+        faulty = (
+            f'<node pkg="train_brake" type="faulty_rank.py" name="wagon_004" args="/train/sound {fault} {exchange}" '
+            'output="screen"/>'
+        )
         return self.launch_nodes(self.wagon("wagon_001"), self.wagon("sound"), faulty, **parameters)
 
     def start(self, package, program, *arguments, name="wagon_004"):
@@ -172,7 +175,8 @@ class Matrix(LaunchTest):
         self.assertTrue(launch.bag() == expected_bag, "the bag is not that of the undisturbed run")
 
     def assert_stopped(self, launch, exit_code, fault="", timeout_s=60):
-        """The run has ended early, and what it has left is the beginning of the undisturbed one. @return records in its bag"""
+        """The run has ended early, and what it has left is the beginning of the undisturbed one. @return records in its
+        bag"""
         self.assertEqual(exit_code, launch.ended(timeout_s), launch.log())
         self.assert_nothing_left(launch)
         summary = launch.summary()

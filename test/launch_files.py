@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Checks every launch file as roslaunch_add_file_check does, and what they launch.
 
-(That CMake function and roslaunch-check look for the package of a file in the folders that it really lies in. launch/ lies
-outside of the package train_brake, which links to it; so there is a link to its package.xml in launch/.)
+(That CMake function and roslaunch-check look for a file's package in the parents of its real path. launch/ is outside
+of the package train_brake, which links to it; so launch/ has a link to its package.xml.)
 """
 import pathlib
 import subprocess

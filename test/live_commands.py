@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Commands that are given to a running train: they take effect, are recorded, and the run is repeated to the same bits."""
+"""Commands that are given to a running train: they take effect, are recorded, and the run is repeated to the same
+bits."""
 import json
 import os
 import pathlib
@@ -23,8 +24,8 @@ from sensor_msgs.msg import Joy
 rospy.init_node("joy")
 joy = rospy.Publisher("/train/joy", Joy, queue_size=10)
 while joy.get_num_connections() == 0: time.sleep(0.1)
-for axes, buttons in (([0, 0], [0, 0, 0]), ([0, 0.5], [0, 0, 0]), ([], [1]), ([0, 0.5], [0]), ([0, float("nan")], [1, 0, 0]),
-                      ([0, 0], [0, 0, 0]), ([0, 0], [0, 1, 0])):
+for axes, buttons in (([0, 0], [0, 0, 0]), ([0, 0.5], [0, 0, 0]), ([], [1]), ([0, 0.5], [0]),
+                      ([0, float("nan")], [1, 0, 0]), ([0, 0], [0, 0, 0]), ([0, 0], [0, 1, 0])):
     joy.publish(Joy(axes=axes, buttons=buttons))
     time.sleep(0.3)
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A driver in another node, in lockstep with the train: the same bits at any pace and on any nodes; what happens when he is
-late, dies, or speaks otherwise."""
+"""A driver in another node, in lockstep with the train: the same bits at any pace and on any nodes; what happens when
+he is late, dies, or speaks otherwise."""
 import json
 import pathlib
 import re

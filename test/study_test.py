@@ -279,14 +279,23 @@ class Calibrate(InAFolder):
         )
 
     def test_finds_the_start_speed_and_the_grade_that_two_speeds_tell(self):
+        gained_kmh_per_s = 3.6 * GRAVITY * 0.02
         done = self.calibrate(
             f"""
 parameters:
   - {{path: initial_speed_kmh, start: 40, lowest: 1, highest: 100}}
   - {{path: "track.grades[0].grade_percent", start: -1, lowest: -5, highest: 5}}
 targets:
-  - {{scenario: rolling.yaml, set: [duration_s=10], result: final_speed_kmh.mean, value: {50 + 3.6 * GRAVITY * 0.02 * 10}, tolerance: 0.001}}
-  - {{scenario: rolling.yaml, set: [duration_s=20], result: final_speed_kmh.mean, value: {50 + 3.6 * GRAVITY * 0.02 * 20}, tolerance: 0.001}}
+  - scenario: rolling.yaml
+    set: [duration_s=10]
+    result: final_speed_kmh.mean
+    value: {50 + 10 * gained_kmh_per_s}
+    tolerance: 0.001
+  - scenario: rolling.yaml
+    set: [duration_s=20]
+    result: final_speed_kmh.mean
+    value: {50 + 20 * gained_kmh_per_s}
+    tolerance: 0.001
 """,
             "--out",
             self.here / "fit.json",

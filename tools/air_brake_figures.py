@@ -192,7 +192,8 @@ def main(train_sim, out):
                 "AB with a two-way End-of-Train device": of(
                     "ecp_against_head_end",
                     "brake=ab_head_end",
-                    "brake.sources=[{name: driver, vehicle: 1, kind: driver}, {name: device, vehicle: -1, kind: end_of_train, "
+                    "brake.sources=[{name: driver, vehicle: 1, kind: driver}, {name: device, vehicle: -1, kind: "
+                    "end_of_train, "
                     "radio_delay_s: 1}]",
                 ),
             },

@@ -18,7 +18,8 @@ esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "This system has no apt-get, so no package is installed. The build needs ROS 1 (catkin, message_generation,"
-  echo "rosbag_storage), GCC 11 or clang, CMake 3.16, Boost, CLI11, Eigen 3, fmt, GoogleTest, nlohmann-json, xxHash and yaml-cpp."
+  echo "rosbag_storage), GCC 11 or clang, CMake 3.16, Boost, CLI11, Eigen 3, fmt, GoogleTest, nlohmann-json," \
+    "xxHash and yaml-cpp."
   echo "Simplest is a container or chroot with Debian 12, where 'make' does all the rest."
   exit 0
 fi

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the man page train_sim(1), made from what the program says of itself with --help.
+"""Prints the man page train_sim(1), made from the program's --help.
 
     tools/man_page.py devel/lib/train_sim/train_sim > train_sim.1
 """

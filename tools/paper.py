@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Runs the paper's three scenarios with all three models and the dip, and shows what came out beside the paper.
+"""Runs the paper's three scenarios with all three models and the dip, and compares the results with the paper's.
 
 usage: tools/paper.py TRAIN_SIM RESULTS_FOLDER
 
-Prints Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10; writes all figures
-into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
+Prints Table 1 of the paper (speeds at the last step) and the largest coupler forces of its Figure 10; writes all
+figures into RESULTS_FOLDER/report.html. Exit code 0 when all runs completed and the page was written.
 """
 
 import json
@@ -92,13 +92,9 @@ def print_figure_10(results):
 def print_energy(results):
     print("\nEnergy ledger: residual over initial energy")
     for scenario in SCENARIOS:
-        print(
-            f"  {scenario:<15}"
-            + "".join(
-                f"{model:>16} {results[scenario, model]['energy']['residual_j'] / results[scenario, model]['energy']['initial_j']:+.1e}"
-                for model in MODELS
-            )
-        )
+        ledgers = {model: results[scenario, model]["energy"] for model in MODELS}
+        shares = (f"{model:>16} {one['residual_j'] / one['initial_j']:+.1e}" for model, one in ledgers.items())
+        print(f"  {scenario:<15}" + "".join(shares))
 
 
 def write_page(train_sim, folder):

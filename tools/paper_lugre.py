@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Runs the ensemble of the study `couplers/paper_lugre` and draws it beside what the paper's text says of Figures 10 and 11.
+"""Runs the ensemble of the study `couplers/paper_lugre` and draws it beside Figures 10 and 11 of the paper.
 
     tools/paper_lugre.py OUT_FOLDER [--starts 36] [--jobs 2]
 
-The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; a few minutes on two cores. Runs that OUT_FOLDER
-holds already are not repeated.
+The emergency of the paper's train from 79.9 to 80.1 km/h, in LTD and in 2D; a few minutes on two cores. Runs that
+OUT_FOLDER holds already are not repeated.
 """
 import argparse
 import concurrent.futures
@@ -112,12 +112,14 @@ def main() -> int:
     for model, values in tension.items():
         one = values[:, COUPLER - 1]
         print(
-            f"{model:>4}: coupler {COUPLER} {one.mean():.0f} +- {one.std(ddof=1):.0f} kN (paper {PAPER_KN[model]:.0f}); over "
+            f"{model:>4}: coupler {COUPLER} {one.mean():.0f} +- {one.std(ddof=1):.0f} kN (paper "
+            f"{PAPER_KN[model]:.0f}); over "
             f"{SECOND_INCREASE_KN:.0f} kN in {(one > SECOND_INCREASE_KN).sum()} of {len(one)} runs"
         )
     for name, values in ((f"{NAMED[0]}-{NAMED[-1]}", named), ("all", difference.mean(axis=1))):
         print(
-            f"2D - LTD, connections {name}: {values.mean():+.1f} +- {values.std(ddof=1) / numpy.sqrt(len(values)):.1f} kN"
+            f"2D - LTD, connections {name}: {values.mean():+.1f} +- {values.std(ddof=1) / numpy.sqrt(len(values)):.1f} "
+            f"kN"
         )
     draw(starts, tension, options.out / "paper_lugre.png")
     print(options.out / "paper_lugre.png")

@@ -313,7 +313,8 @@ def print_launch_files():
         if args:
             print(table(["argument", "default", "meaning"], args) + "\n")
     print(
-        "### Scenarios\n\nEach runs a scenario of its name with `train.launch`, all of whose arguments can be given, too.\n"
+        "### Scenarios\n\nEach runs a scenario of its name with `train.launch`, all of whose arguments can be given, "
+        "too.\n"
     )
     print(table(["launch file", "what", "default of `model`"], scenarios) + "\n")
     print(table(["argument", "default", "meaning"], common) + "\n")
@@ -340,11 +341,11 @@ def print_interface():
         """# ROS interface
 
 Made by `tools/ros_interface.py` from the `.msg` and `.srv` files, the launch files and the nodes' code; do not edit it.
-`make reference` renews it. What passes between master and ranks, and when: [lockstep.md](lockstep.md); driving a running
-train: [driving.md](driving.md).
+`make reference` renews it. What passes between master and ranks, and when: [lockstep.md](lockstep.md); driving a
+running train: [driving.md](driving.md).
 
-Names are in the train's namespace, `/train` in the shipped launch files: `state` is `/train/state`, `~pause` of the master
-`/train/master/pause`. Quantities are in SI units; the unit is in the field's name or beside it.
+Names are in the train's namespace, `/train` in the shipped launch files: `state` is `/train/state`, `~pause` of the
+master `/train/master/pause`. Quantities are in SI units; the unit is in the field's name or beside it.
 """
     )
     docs = launch_documents()

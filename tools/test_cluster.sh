@@ -100,8 +100,9 @@ watch_placement &
 watcher=$!
 
 # (Without shared memory, which these machines would have: they are one.)
-timeout 120 roslaunch train_brake emergency.launch nodes:=$ranks machines:="${addresses[*]}" env_loader:="$work/env.sh" \
-  user:=root out:="$work/out" set:="$change" shared_memory:=false exit_status_file:="$work/status" >"$work/launch.log" 2>&1
+timeout 120 roslaunch train_brake emergency.launch nodes:=$ranks machines:="${addresses[*]}" \
+  env_loader:="$work/env.sh" user:=root out:="$work/out" set:="$change" shared_memory:=false \
+  exit_status_file:="$work/status" >"$work/launch.log" 2>&1
 kill $watcher 2>/dev/null
 code=$(cat "$work/status" 2>/dev/null || echo "none")
 got=$(digest_in "$work/out/summary.json" 2>/dev/null)
@@ -119,16 +120,22 @@ failed() {
   echo "test-cluster: FAILED" >&2
   exit 1
 }
-[ "$code" = 0 ] && [ -n "$expected" ] && [ "$got" = "$expected" ] && [ "$placed" = "3 2 2" ] && [ "$left" = 0 ] || failed
+[ "$code" = 0 ] && [ -n "$expected" ] && [ "$got" = "$expected" ] && [ "$placed" = "3 2 2" ] && [ "$left" = 0 ] ||
+  failed
 
 # A study whose runs are dealt to two of the machines by GNU parallel (docs/studies.md): the table of one that was run
 # here.
-study() { rosrun train_brake sweep "$workspace/config/scenarios/single_wagon_stop.yaml" "$work/$1" --grid initial_speed_kmh=40:80:6 "${@:2}" >/dev/null 2>&1; }
+study() {
+  rosrun train_brake sweep "$workspace/config/scenarios/single_wagon_stop.yaml" "$work/$1" \
+    --grid initial_speed_kmh=40:80:6 "${@:2}" >/dev/null 2>&1
+}
 study here && study far --plan-only && mkdir -p "$work/remote" || failed
-(cd "$work" && parallel --will-cite --ssh "ssh -i $work/home/.ssh/id_rsa -o UserKnownHostsFile=$work/home/.ssh/known_hosts" \
+(cd "$work" && parallel --will-cite \
+  --ssh "ssh -i $work/home/.ssh/id_rsa -o UserKnownHostsFile=$work/home/.ssh/known_hosts" \
   --sshlogin "1/root@${addresses[0]},1/root@${addresses[1]}" --workdir "$work/remote" --joblog "$work/joblog" \
   --transferfile far/runs/{}/config.yaml --return far/runs/{}/summary.json --cleanup \
-  ". $workspace/devel/setup.bash; train_sim run far/runs/{}/config.yaml --json --threads 1 > far/runs/{}/summary.json" :::: far/jobs.txt) \
+  ". $workspace/devel/setup.bash; train_sim run far/runs/{}/config.yaml --json --threads 1 > far/runs/{}/summary.json" \
+  :::: far/jobs.txt) \
   >"$work/parallel.log" 2>&1 || failed
 rosrun train_brake sweep "$work/far" --collect >/dev/null || failed
 cmp "$work/here/results.csv" "$work/far/results.csv" || failed
@@ -165,7 +172,8 @@ for loss in lose_link lose_machine; do
     timeout 60 rostopic echo -n 1 --filter "m.exchange >= 2000" /train/live/status >/dev/null 2>&1 && break
     sleep 0.5
   done
-  timeout 120 rostopic echo -n 1 --filter "any(v.key == 'recoveries' and int(v.value) > 0 for s in m.status for v in s.values)" \
+  recovered="any(v.key == 'recoveries' and int(v.value) > 0 for s in m.status for v in s.values)"
+  timeout 120 rostopic echo -n 1 --filter "$recovered" \
     /diagnostics >"$work/recovered" 2>/dev/null &
   counting=$!
   $loss
@@ -176,7 +184,8 @@ for loss in lose_link lose_machine; do
   got=$(digest_in "$work/out/summary.json" 2>/dev/null)
   back=no
   [ -s "$work/recovered" ] && back=yes
-  printf '%-19s exit code %s, digest %s (in one process %s), nodes brought back: %s\n' $loss "$code" "$got" "$expected" $back
+  printf '%-19s exit code %s, digest %s (in one process %s), nodes brought back: %s\n' \
+    $loss "$code" "$got" "$expected" $back
   [ "$code" = 0 ] && [ "$got" = "$expected" ] && [ $back = yes ] || failed
 done
 echo "test-cluster: passed"

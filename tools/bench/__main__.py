@@ -1,7 +1,7 @@
 """Measures the simulator on this machine: one table to the terminal, the same with words to docs/performance.md.
 
-Every section leaves its results in results/bench/, so that one alone can be measured again, and what was interrupted goes on
-with `missing`.
+Every section writes its results to results/bench/, so that one can be measured again alone, and an interrupted
+measurement is continued with `missing`.
 """
 import argparse
 import dataclasses
@@ -85,7 +85,8 @@ def _table_of(times):
 
 
 def _measure(name):
-    """Measures a section and keeps its results; what went wrong, or nothing: one section's end is not the others'."""
+    """Measures a section and keeps its results. Returns the error, or nothing: a failed section does not stop the
+    others."""
     print(f"{name} ...", file=sys.stderr, flush=True)
     begin = time.monotonic()
     file = RESULTS / f"{name}.json"
@@ -128,7 +129,7 @@ def _load():
 
 
 def _commits(results):
-    """The commit that all was measured at, or which section at which: with ONLY= they may differ."""
+    """The commit of all measurements, or that of each section: with ONLY= they may differ."""
     sections = {}
     for name, result in results.items():
         sections.setdefault(result["commit"], []).append(name)

@@ -1,4 +1,4 @@
-"""What an exchange costs over the number of ranks, by every way to call them, beside MPI; start-up and shut-down."""
+"""Cost of an exchange over the number of ranks, for every kind of call, beside MPI; start-up and shut-down."""
 import measure
 import profile_ranks
 import workspace

@@ -1,4 +1,4 @@
-"""What each part that the paper's train lacks costs a train, and two threads beside other work."""
+"""Cost of each feature that the paper's train lacks, and two threads beside other work."""
 import contextlib
 
 import machine

@@ -1,4 +1,4 @@
-"""How far the wagon's step is from what the machine can do: operations, instructions, memory."""
+"""The wagon's step against the machine's limits: operations, instructions, memory."""
 import json
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""What ran the measurements: processor, cores, memory, compiler. No name of a host, no path."""
+"""The machine of the measurements: processor, cores, memory, compiler. No name of a host, no path."""
 import os
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""Runs programs and says what they took."""
+"""Runs programs and measures their time and memory."""
 import contextlib
 import json
 import os
@@ -12,7 +12,7 @@ import time
 
 
 class Failed(Exception):
-    """A program that did not do what was measured."""
+    """A measured program failed."""
 
 
 class Run:

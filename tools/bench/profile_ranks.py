@@ -1,4 +1,4 @@
-"""What an exchange costs each rank: time on a core and in the kernel, waits for a core, changes between processes."""
+"""Cost of an exchange for each rank: time on a core and in the kernel, waits for a core, changes between processes."""
 import os
 import pathlib
 import re

@@ -28,7 +28,7 @@ def run():
 
 
 def _fixed_ns(ns_50, ns_2000):
-    """What an exchange costs whatever the train's length; the rest of it is a time for every lane of the packs."""
+    """The cost of an exchange that does not depend on the train's length; the rest is a time per lane of the packs."""
     lanes = machine.lanes()
     lanes_of_50, lanes_of_2000 = (lanes * -(-size // lanes) for size in (50, 2000))
     per_lane = (2000 * ns_2000 - 50 * ns_50) / (lanes_of_2000 - lanes_of_50)

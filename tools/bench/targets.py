@@ -1,4 +1,4 @@
-"""What we want, whether we have it, and why not."""
+"""The targets, whether they are met, and why not."""
 import machine
 from table import Table, number
 
@@ -46,20 +46,20 @@ TARGETS = [
 # By fact, why its target was missed where it was; places as in performance.md.in.
 RECORDING = """the recorder's thread works {vehicles.bag_us} us for a record, and recording adds
 {runs.2d_{cores}_recording_cpu %} to the CPU time of the run: the numbers of a record are copied into the queue,
-converted into the open chunk and copied by the kernel into its page cache, and checkpoints need a digest of the bag. With
-a thread of the run on every core, the recorder's takes its time from one of them, and the others wait for that one at the
-barrier of the step."""
+converted into the open chunk and copied by the kernel into its page cache, and checkpoints need a digest of the bag.
+With a thread of the run on every core, the recorder's takes its time from one of them, and the others wait for that one
+at the barrier of the step."""
 RANKS = """with many ranks on a core an exchange is bound by changes between processes
 ([table](#ranks-and-mpi)): {exchange.shared_memory_switches} for each rank and exchange, which takes
 {exchange.shared_memory_cpu_us} us of a core from waking up to sleeping, {exchange.shared_memory_system %} of it in the
 kernel; the ranks of MPI, which never sleep, change {exchange.MPI_switches} times."""
-FEW_RANKS = """with few ranks an exchange is bound by the time that a sleeping process takes to wake up: the master once and
-each rank once, {exchange.shared_memory_22_cpu_us} us of a core for each of 22 ranks. Those of MPI stay awake and take
-{exchange.MPI_22_cpu_us} us, at the cost of whatever else wants their cores
+FEW_RANKS = """with few ranks an exchange is bound by the time that a sleeping process takes to wake up: the master once
+and each rank once, {exchange.shared_memory_22_cpu_us} us of a core for each of 22 ranks. Those of MPI stay awake and
+take {exchange.MPI_22_cpu_us} us, at the cost of whatever else wants their cores
 ([lockstep.md](lockstep.md#shared-memory))."""
-TCP = """each rank and exchange takes {exchange.TCP_22_cpu_us} us of a core, {exchange.TCP_22_system %} of it in the kernel, which
-carries every message through the network's layers on loopback: three system calls of the rank (wait, receive, send), two of
-the master, against one through shared memory ({exchange.shared_memory_22_cpu_us} us)."""
+TCP = """each rank and exchange takes {exchange.TCP_22_cpu_us} us of a core, {exchange.TCP_22_system %} of it in the
+kernel, which carries every message through the network's layers on loopback: three system calls of the rank (wait,
+receive, send), two of the master, against one through shared memory ({exchange.shared_memory_22_cpu_us} us)."""
 SPREAD = """an exchange costs about {scaling.{model}_fixed_us} us however short the train is, and 50 vehicles fill
 {scaling.lanes_of_the_last_pack} of the {scaling.lanes} lanes of their last pack, which takes as long as a full one."""
 WHOLE_STEP = """a 2D run is its vehicles: creep and slip take {vehicles.creep_share %} of a wagon's step, the
@@ -72,20 +72,21 @@ than to run ([table](#ranks-and-mpi)).""",
     "2d_bag": WHOLE_STEP,
     "2d_1_wall_s": WHOLE_STEP,
     "2d_{cores}_wall_s": WHOLE_STEP,
-    "ltd_bag": """without its bag the run has become faster (below); with it, the recorder's thread, {vehicles.bag_us} us for
-each record, and the kernel's copies into its page cache are as long as the run, and have not changed.""",
-    "ranks_wall_s": """{graph.overhead_ms} ms of each exchange are waking up; the rest is the wagons' own time, on cores of which one
-has the master and the recorder besides.""",
+    "ltd_bag": """without its bag the run has become faster (below); with it, the recorder's thread, {vehicles.bag_us}
+us for each record, and the kernel's copies into its page cache are as long as the run, and have not changed.""",
+    "ranks_wall_s": """{graph.overhead_ms} ms of each exchange are waking up; the rest is the wagons' own time, on cores
+of which one has the master and the recorder besides.""",
     "every_vehicle_wall_s": RANKS,
-    "patches_ns": """wagons side by side that stand on several surfaces look up each wheel's surface, and solve the slip with a
-law for each lane; those on one surface pay for its law: falling friction has an exponential in each iteration.""",
+    "patches_ns": """wagons side by side that stand on several surfaces look up each wheel's surface, and solve the slip
+with a law for each lane; those on one surface pay for its law: falling friction has an exponential in each
+iteration.""",
     "ltd_1_wall_s": """couplers take {vehicles.ltd_share_of_couplers %} of an exchange, the vehicles themselves
-{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials and a
-division, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
+{vehicles.ltd_share_of_vehicles %} ([table](#one-vehicle)): the law of a draft gear under force has two exponentials
+and a division, more than all that an LTD vehicle does. Recording adds {runs.ltd_1_recording %} to the run.""",
     "2d_{cores}_recording": RECORDING,
     "2d_1_recording": RECORDING,
-    "to_limit": """a wagon has more in flight than any set of registers holds, so that most of its instructions move numbers
-([below](#how-far-from-the-machines-limit)); instructions alone take {limit.issue_share %} of the time.""",
+    "to_limit": """a wagon has more in flight than any set of registers holds, so that most of its instructions move
+numbers ([below](#how-far-from-the-machines-limit)); instructions alone take {limit.issue_share %} of the time.""",
     **{fact: RANKS for fact in ("to_mpi_242", "242_ms")},
     **{fact: FEW_RANKS for fact in ("to_mpi_2", "to_mpi_8", "to_mpi_22")},
     "tcp_to_mpi_242": TCP,

@@ -19,14 +19,17 @@ cp -a "$root/opt" "$main/"
 find "$main" -name __pycache__ -prune -exec rm -rf {} +
 rm -rf "$main$prefix/include" "$main$prefix/lib/pkgconfig" "$main$prefix"/share/*/cmake
 { grep -rlI "$root" "$main" || true; } | xargs -r sed -i "s:$root::g"   # paths of the folder that it was staged in
-(cd "$main$prefix" && find . \( -path './lib/*train_brake_rviz*' -o -path './share/train_brake_rviz*' \) \( -type f -o -type l \) -print0) |
+(cd "$main$prefix" && find . \( -path './lib/*train_brake_rviz*' -o -path './share/train_brake_rviz*' \) \
+  \( -type f -o -type l \) -print0) |
   while IFS= read -r -d '' file; do
     mkdir -p "$rviz$prefix/$(dirname "$file")" && mv "$main$prefix/$file" "$rviz$prefix/$file"
   done
 find "$main" -type d -empty -delete
-find "$main$prefix/lib" "$rviz$prefix/lib" -type f \( -name '*.so' -o -perm -100 \) -exec sh -c 'file -b "$1" | grep -q ^ELF && strip --strip-unneeded "$1"' _ {} \;
+find "$main$prefix/lib" "$rviz$prefix/lib" -type f \( -name '*.so' -o -perm -100 \) \
+  -exec sh -c 'file -b "$1" | grep -q ^ELF && strip --strip-unneeded "$1"' _ {} \;
 
-mkdir -p "$main/usr/bin" "$main/usr/share/man/man1" "$main/usr/share/doc/train-brake" "$rviz/usr/share/doc/train-brake-rviz"
+mkdir -p "$main/usr/bin" "$main/usr/share/man/man1" "$main/usr/share/doc/train-brake" \
+  "$rviz/usr/share/doc/train-brake-rviz"
 cat >"$main/usr/bin/train_sim" <<END
 #!/bin/sh
 # The program, with the shipped parts behind those of the caller.
@@ -35,7 +38,8 @@ export LD_LIBRARY_PATH="$prefix/lib\${LD_LIBRARY_PATH:+:\$LD_LIBRARY_PATH}"
 exec $prefix/lib/train_sim/train_sim "\$@"
 END
 chmod 755 "$main/usr/bin/train_sim"
-LD_LIBRARY_PATH=$main$prefix/lib "$here/../man_page.py" "$main$prefix/lib/train_sim/train_sim" | gzip -9n >"$main/usr/share/man/man1/train_sim.1.gz"
+LD_LIBRARY_PATH=$main$prefix/lib "$here/../man_page.py" "$main$prefix/lib/train_sim/train_sim" |
+  gzip -9n >"$main/usr/share/man/man1/train_sim.1.gz"
 for package in train-brake train-brake-rviz; do
   cp "$here/../../LICENSE" "$work/$package/usr/share/doc/$package/copyright"
 done
@@ -45,7 +49,8 @@ cp -r "$here/../../docs" "$main/usr/share/doc/train-brake/"
 libraries() {  # that the programs of a folder need, as packages
   mkdir -p "$work/shlibs/debian" && : >"$work/shlibs/debian/control"
   (cd "$work/shlibs" && find "$1" -type f -exec sh -c 'file -b "$1" | grep -q ^ELF' _ {} \; -print0 |
-    xargs -0 dpkg-shlibdeps --ignore-missing-info -l"$main$prefix/lib" -l"$rviz$prefix/lib" -O 2>/dev/null | sed 's/^shlibs:Depends=//')
+    xargs -0 dpkg-shlibdeps --ignore-missing-info -l"$main$prefix/lib" -l"$rviz$prefix/lib" -O 2>/dev/null |
+    sed 's/^shlibs:Depends=//')
 }
 control() {  # PACKAGE DEPENDS SUMMARY TEXT
   mkdir -p "$work/$1/DEBIAN"

@@ -12,7 +12,7 @@ namespace {
 using train_dynamics::BrokenRule;
 using train_dynamics::DriverCommand;
 
-/// What a command breaks in a train, as a sentence; empty: nothing.
+/// The rule that a command breaks in a train, as a sentence; empty: none.
 std::string WhyNot(const DriverCommand& command, const train_dynamics::ScenarioParams& scenario) {
   if (command.IsOfRail()) {
     using train_dynamics::VehicleModel;
@@ -65,10 +65,10 @@ std::uint64_t LiveCommands::Receive(const train_brake_msgs::DriverCommand& messa
 std::vector<DriverCommand> LiveCommands::Take(std::uint64_t exchange, std::size_t patches) {
   const std::lock_guard<std::mutex> lock(mutex_);
   patches_ = patches;
-  if (next_exchange_ == 0) {  // a run that goes on from a checkpoint begins later
+  if (next_exchange_ == 0) {  // a resumed run begins later
     for (Received& received : received_) received.exchange = exchange;
   }
-  next_exchange_ = exchange + 1;  // what comes from now on is too late for this one
+  next_exchange_ = exchange + 1;  // later commands miss this exchange
   if (received_.empty()) return {};
   std::vector<DriverCommand> due;
   for (const Received& received : received_) {

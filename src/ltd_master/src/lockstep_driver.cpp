@@ -22,7 +22,7 @@ namespace {
 using train_brake_msgs::Drive;
 
 constexpr double kHandshake = 1.0;         // [s] for a node that has advertised to accept a connection
-constexpr double kSecondsPerReport = 5.0;  // on a driver who has not come up yet
+constexpr double kSecondsPerReport = 5.0;  // on a driver that has not started yet
 constexpr std::chrono::milliseconds kRetry(100);
 
 const char* ConsequenceOf(OnLostDriver on_lost) {
@@ -41,7 +41,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Who may have been started in another namespace or under another name, as a clause; empty: nobody.
+/// Drivers that may have been started in another namespace or under another name, as a clause; empty: none.
 std::string ServedElsewhere() {
   const std::string end = "/drive";
   XmlRpc::XmlRpcValue request, response, state;  // publishers, subscribers, services; of each [name, [nodes]]

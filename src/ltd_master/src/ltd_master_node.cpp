@@ -34,7 +34,7 @@ bool WaitForRosMaster() {
   return true;
 }
 
-/// Ends this process before it ends the run of another one, whose name it would take.
+/// Ends this process if another one has its name: registering would end that one's run.
 void RefuseTakenName() {
   using train_node::RunningNode;
   const RunningNode other = train_node::FindNodeOfOwnName();
@@ -49,7 +49,7 @@ void RefuseTakenName() {
                   ros::this_node::getName(), ros::master::getURI(), other.host, about));
 }
 
-/// What was left on the ROS master by others, and is used by a node that was started by hand.
+/// Warns of parameters that others left on the ROS master and that a node started by hand would use.
 void TellStaleParameters(const train_node::NodeParameters& parameters, const std::vector<std::string>& arguments) {
   std::vector<std::string> stale;
   for (const std::string& name : parameters.Names()) {
@@ -65,8 +65,8 @@ void TellStaleParameters(const train_node::NodeParameters& parameters, const std
            fmt::format("{}", fmt::join(stale, ", ")).c_str(), ros::this_node::getName().c_str());
 }
 
-/// The file that gets the exit code, through links. What an earlier run left there is removed, so that it is not taken
-/// for this one's. Throws std::invalid_argument if it cannot be written: before the run, not after it.
+/// The file that gets the exit code, through links. An earlier run's file is removed, so that it is not mistaken for
+/// this one's. Throws std::invalid_argument if it cannot be written: before the run, not after it.
 std::string MakeReady(const std::string& exit_status_file) {
   namespace fs = std::filesystem;
   try {
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   train_run::CatchInterrupts();
   if (!WaitForRosMaster()) return train_run::kInterrupted;
   train_node::NodeParameters parameters(ros::this_node::getName());
-  // First of all parameters: that one of the others is wrong is told there, too.
+  // Before all other parameters: an error in one of them is also written there.
   const std::string wanted_status_file = parameters.Text("exit_status_file", "");
   std::string exit_status_file;
   std::optional<ros::NodeHandle> own;  // the node and its log end with the last handle: this one

@@ -65,8 +65,7 @@ void Answer(const RunControl::Reply& reply, Response& response) {
 
 constexpr int kQueue = 100;  // one second of simulated time
 
-/// Unlike that of any other run, so that what a late process of another one sends can be told apart; random, so that
-/// nobody guesses it.
+/// Unique, so that messages of a late process of another run are recognised; random, so that it cannot be guessed.
 std::uint64_t NewRunId() {
   std::random_device random;
   return (static_cast<std::uint64_t>(random()) << 32 | random()) | 1u;
@@ -179,7 +178,7 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
   registration_ = std::make_unique<train_node::RegistrationWatch>(kPeriod, services, [this] { clock_.TellUse(); });
 }
 
-/// What the user has given and this run does not use, and where its results go.
+/// Logs the settings that this run does not use, and where its results go.
 void MasterNode::TellWhatIsNotUsed() const {
   const bool is_2d = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
   if (is_2d && options_.vehicles == 0 && options_.ranks == 0) {
@@ -235,7 +234,7 @@ std::unique_ptr<RosTransport> MasterNode::MakeRosTransport(std::vector<train_dyn
   transport.recover = options_.recover;
   transport.recovery_timeout_s = options_.recovery_timeout_s;
   constexpr double kSnapshotInterval = 1.0;  // [s] of simulated time
-  constexpr double kMostExchanges = 1000.0;  // bounds what is kept since, and what a lost rank has to repeat
+  constexpr double kMostExchanges = 1000.0;  // limits the loads kept since, and the repetition by a lost rank
   transport.snapshot_exchanges =
       std::lround(std::clamp(kSnapshotInterval / scenario.exchange_interval_s, 1.0, kMostExchanges));
   transport.interrupted = [this] { return Ending() && Clock::now() > finishing_until_; };
@@ -279,7 +278,7 @@ int MasterNode::Run() {
   std::string rank_fault;
   try {
     Go(run);
-  } catch (const WaitInterrupted&) {  // by what Ending tells
+  } catch (const WaitInterrupted&) {  // for the reason that Ending gives
   } catch (const RankFailure& e) {
     if (!Ending()) rank_fault = e.what();
   } catch (const DriverFailure& e) {
@@ -300,9 +299,9 @@ int MasterNode::Run() {
   std::string fault = rank_fault.empty() ? run.fault() : rank_fault;
   if (exit_code == train_run::kFailure) fault = "the results could not be written: " + run.write_error();
   PublishDiagnostics(master, exit_code == train_run::kSuccess ? "complete" : "ended early");
-  ros::WallDuration(0.2).sleep();  // what was published last is still on its way to subscribers
+  ros::WallDuration(0.2).sleep();  // the last messages are still being sent to subscribers
   train_console::Print("{}", train_results::SummaryText(json));
-  if (exit_code == train_run::kFailure) train_console::Print("{}", json);  // it may be nowhere else
+  if (exit_code == train_run::kFailure) train_console::Print("{}", json);  // the result may exist nowhere else
   train_console::FinishOutput();                                           // for people: the result is summary.json
   if (exit_code == train_run::kInterrupted) {
     ROS_WARN("interrupted at %.3f s of %g s", master.time_s(), scenario.duration_s);
@@ -429,7 +428,7 @@ void MasterNode::Publish(const TrainRecord& record) {
 
 void MasterNode::Settle(double simulated_s) {
   live_.Settle(PaceNow());
-  if (!control_.paused()) return;  // it only keeps to its pace
+  if (!control_.paused()) return;  // it only waits for its pace
   clock_.Settle(simulated_s);
   const std::optional<TrainRecord> last = live_.last();
   if (!last) return;

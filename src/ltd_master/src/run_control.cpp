@@ -46,7 +46,7 @@ RunControl::Reply RunControl::Step(std::uint64_t exchanges) {
   goal_ = end;
   const std::uint64_t decisions = decisions_;
   changed_.notify_all();
-  // A pause ends it once the train stands, a resumption at once.
+  // A pause ends the steps once the run has stopped, a resumption at once.
   changed_.wait(lock,
                 [&] { return completed_ >= end || ended_ || (decisions_ != decisions && !(paused_ && is_moving_)); });
   if (completed_ >= end) return {true, ""};
@@ -92,7 +92,7 @@ bool RunControl::Admit(double simulated_s) {
   const Clock::time_point patience = Clock::now() + std::chrono::milliseconds(100);
   while (true) {
     const bool may_move = MayMove();
-    if (!may_move) pace_mark_.reset();  // a pause is not made up for
+    if (!may_move) pace_mark_.reset();  // time lost in a pause is not caught up
     const Clock::time_point due = may_move ? Due(simulated_s) : Clock::time_point::max();
     const Clock::time_point now = Clock::now();
     if (due <= now) {

@@ -84,7 +84,7 @@ class CsvLines {
     return false;
   }
 
-  /// Whether the quotes of the line are wrong, which has been reported.
+  /// Whether the line has wrong quotes, which has been reported.
   bool is_bad() const { return is_bad_; }
 
   /// Whether the line has too many cells because commas separate both cells and decimals: "0,5,100,25" in two columns.

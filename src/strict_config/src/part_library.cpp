@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxChain = 64;  ///< files entered on the way to a value
+constexpr std::size_t kMaxChain = 64;  ///< longest chain of files that lead to a value
 constexpr std::size_t kListedNames = 12;
 constexpr const char* kExtension = ".yaml";
 
@@ -43,8 +43,8 @@ bool Exists(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-/// The path by which a file is recognised. Links are not followed, so that what a linked file refers to is
-/// found beside the link, and messages name files as the user does.
+/// The path that identifies a file. Links are not followed, so that references in a linked file are found beside the
+/// link, and messages name files as the user does.
 fs::path Normal(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);

@@ -40,7 +40,7 @@ std::size_t FindKey(const std::string& text, const std::string& key) {
   return at;
 }
 
-/// Whether text in UTF-8 has characters that command a terminal (but for line feeds and tabs): control characters of
+/// Whether text in UTF-8 has characters that control a terminal (except line feeds and tabs): control characters of
 /// ASCII, those from U+0080 to U+009F, and those that turn the direction of writing.
 bool HasControlCharacter(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -193,7 +193,7 @@ void Reader::Check(bool ok, const std::string& key, const std::string& rule, con
   } else if (!spot.value && number != nullptr) {
     text += ", got " + ShortestDecimal(number->value) + " (default)";
   }
-  // Of a map under the key, the rule reads what it says.
+  // If the key has a map, the rule reads all of it.
   std::vector<std::string> read;
   if (!is_reference || reads.empty()) read.push_back(spot.path.text);
   for (const char* other : reads) read.push_back(Path(other).text);
@@ -405,7 +405,7 @@ void Reader::Finish() {
     given->used = true;
     given->value->source.Report(session_.errors, Path(step), "is not a known key" + KeyHint(step, known_));
   }
-  // All are judged before the first is reported: one broken rule does not void another.
+  // All rules are checked before the first is reported: one broken rule does not make another void.
   const auto is_read = [this](const std::string& path) { return session_.read.count(path) > 0; };
   const auto is_void = [&](const BrokenRule& rule) {
     return std::any_of(rule.read.begin(), rule.read.end(),
@@ -435,7 +435,7 @@ bool Reader::Afford(const Place& place) {
     return true;
   }
   session_.values_left = 0;
-  // Without a path: said once, not for every place that is left out.
+  // Without a path: reported once, not for every place that is omitted.
   place.source.Report(session_.errors, "", "unfolds, through its references, to more values than are read");
   return false;
 }
@@ -481,7 +481,7 @@ Reader::Place Reader::TextPlace(ReadSession& session, const std::string& text, c
 }
 
 void Reader::ReportUnused(ReadSession& session) {
-  // After another error the value may just not have been reached.
+  // After another error, the value may simply not have been read.
   if (!session.errors.empty()) return;
   for (const Override* const given : session.overrides.Unused()) {
     given->value->source.Report(session.errors, given->path, "names no value of the configuration");

@@ -19,7 +19,7 @@ NodePtr Scalar(std::string text, bool quoted = false) {
   return node;
 }
 
-/// Whether text reads back as itself when it stands without quotes, also in flow style.
+/// Whether text reads back unchanged without quotes, also in flow style.
 bool IsPlain(const std::string& text) {
   static const std::set<std::string> kSpecial{"true", "false", "yes", "no", "on", "off", "null", "y", "n"};
   std::string lower = text;
@@ -68,7 +68,7 @@ std::string Flow(const Node& node) {
 
 bool IsScalar(const NodePtr& node) { return node->kind == Node::Kind::kScalar || node->kind == Node::Kind::kNull; }
 
-/// Whether a value stands on the line of its key.
+/// Whether a value is written on the line of its key.
 bool IsInline(const Node& node) {
   if (node.kind == Node::Kind::kMap) return node.entries.empty();
   return std::all_of(node.items.begin(), node.items.end(), IsScalar);

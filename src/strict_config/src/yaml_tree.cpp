@@ -46,7 +46,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     RefuseAsKey(mark);
     const auto node = NewNode(Node::Kind::kNull, mark);
-    // The parser's mark is where the next thing stands; a value left out is better sought at its key.
+    // The parser's mark is at the next token; a missing value is better reported at its key.
     if (!frames_.empty() && frames_.back().key) node->source = frames_.back().key_source;
     Place({node, 1, 0, 0}, anchor, mark);
   }

@@ -1,5 +1,5 @@
-/// Vehicles of one's own in a train, in C++: point masses with friction brakes, as own_vehicle in Python, and with
-/// snapshots, so that the train's master can bring a lost node back and leave checkpoints. See docs/own_vehicle.md.
+/// Own vehicles in a train, in C++: point masses with friction brakes, as own_vehicle in Python, and with snapshots, so
+/// that the train's master can bring a lost node back and leave checkpoints. See docs/own_vehicle.md.
 #include <ros/ros.h>
 #include <train_brake_msgs/Configure.h>
 #include <train_brake_msgs/Step.h>
@@ -55,7 +55,7 @@ class OwnVehicles {
       answer.message = "the loads are not finite";
       return true;
     }
-    if (request.exchange == next_) {  // the one before is answered again, and nothing moves
+    if (request.exchange == next_) {  // else the last one: the same reply again, nothing moves
       for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
         const double pull_n = request.coupler_force_n[i] - request.coupler_force_n[i + 1];
         Move(i, pull_n, brake_n_per_pa_ * request.cylinder_pressure_pa[i], request.dt_s, request.steps);
@@ -80,7 +80,7 @@ class OwnVehicles {
     }
   }
 
-  /// The state as bytes, which mean nothing to anybody else.
+  /// The state as bytes, in a format of this program only.
   std::vector<std::uint8_t> Snapshot() const {
     const std::size_t half = displacement_m_.size() * sizeof(double);
     std::vector<std::uint8_t> bytes(2 * half);

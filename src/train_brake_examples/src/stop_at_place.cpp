@@ -2,12 +2,12 @@
 ///
 ///   needed deceleration    a = v^2 / (2 (place - position - v settle_s))
 ///
-/// v settle_s is what the train goes on before a change of the brake has acted. The first reduction of the brake pipe
-/// is made when a reaches `plan_mps2`. Afterwards it is deepened step by step, each when the train slows down by less
-/// than a, and not before the step before it has had `settle_s` to act. A deeper reduction is never taken back: a brake
-/// that releases step by step is not assumed. So the train stops beside the place by what one step too many, or the
-/// last one too late, makes: with the freight train of config/scenarios/drive_and_stop.yaml 6 m beyond it from 40 km/h,
-/// 23 m short of it from 60 km/h.
+/// v settle_s is the distance that the train covers before a change of the brake has acted. The first reduction of the
+/// brake pipe is made when a reaches `plan_mps2`. Afterwards it is deepened step by step, each when the train slows
+/// down by less than a, and not before the step before it has had `settle_s` to act. A deeper reduction is never taken
+/// back: a brake that releases step by step is not assumed. The stopping error is therefore the effect of one step too
+/// many, or of a last step too late: with the freight train of config/scenarios/drive_and_stop.yaml 6 m beyond it from
+/// 40 km/h, 23 m short of it from 60 km/h.
 #include <ros/ros.h>
 #include <train_brake_msgs/Drive.h>
 

@@ -26,7 +26,7 @@ QString Kmh(double mps) { return std::isfinite(mps) ? Number(kKmhPerMps * mps, 0
 QString Distance(double m) { return m < 1000.0 ? Number(m, 0) + " m" : Number(1e-3 * m, 1) + " km"; }
 QString KiloPascal(double kpa) { return std::isfinite(kpa) ? Number(kpa, 0) + " kPa" : QString("not computed"); }
 
-/// What comes next of a quantity that changes along the line: "80 km/h in 1.2 km".
+/// The next value of a quantity that changes along the line: "80 km/h in 1.2 km".
 template <class Text>
 QString Next(const std::vector<double>& from_m, const std::vector<double>& values, double front_m, const Text& text) {
   if (from_m.empty() || values.size() != from_m.size()) return "no change in sight";

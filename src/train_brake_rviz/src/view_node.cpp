@@ -18,7 +18,7 @@ namespace train_brake_rviz {
 namespace {
 
 constexpr double kPeriod = 0.05;                   // [s] of wall time between two pictures
-constexpr std::chrono::seconds kRefreshPeriod(1);  // a display that came late or was reset gets everything
+constexpr std::chrono::seconds kRefreshPeriod(1);  // a display that was added late or reset gets everything
 constexpr const char* kTrackFrame = "track";
 constexpr const char* kBoardFrame = "board";
 
@@ -232,7 +232,7 @@ void ViewNode::PublishTransforms(const Snapshot& snapshot) {
   std::vector<geometry_msgs::TransformStamped> transforms;
   for (const int i : shown) {
     ros::Time& sent = transform_sent_[i];
-    if (sent == state_->header.stamp) continue;  // tf does not like to hear the same twice
+    if (sent == state_->header.stamp) continue;  // tf warns of repeated transforms
     sent = state_->header.stamp;
     constexpr double kReach = 1.0;  // [m] over which the slope is taken
     const double position = snapshot.position_m[i];

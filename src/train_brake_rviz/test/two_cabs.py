@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Two trains under one ROS master, each in its namespace with a driver in lockstep, a cab and an rviz: nothing of one reaches
-the other one."""
+"""Two trains under one ROS master, each in its namespace with a driver in lockstep, a cab and an rviz: nothing of one
+reaches the other one."""
 import json
 import os
 import pathlib

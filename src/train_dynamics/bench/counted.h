@@ -18,7 +18,7 @@ struct OperationCounts {
   long Arithmetic() const { return add + multiply + divide + square_root; }
 };
 
-/// Of all Counted so far.
+/// Operations on all Counted so far.
 inline OperationCounts g_counts;
 
 /// A number that counts what is done with it: a law that runs over Counted tells its own cost. Patterns of bits are not

@@ -4,7 +4,7 @@
 
 namespace train_dynamics::bench {
 
-/// StepWagon taken apart: each part by itself, on what it meets in the step. T as in numeric/scalar.h.
+/// The parts of StepWagon, each by itself, on its inputs in the step. T as in numeric/scalar.h.
 template <class T>
 class StepInParts {
  public:

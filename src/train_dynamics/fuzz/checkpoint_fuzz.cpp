@@ -1,5 +1,5 @@
-// Checkpoints and snapshots: as the bytes of a file, and once more as contents between a right mark and a right
-// checksum; what can be decoded is resumed.
+// Fuzzes checkpoints and snapshots: the input as a whole file, and as contents between a valid mark and checksum.
+// Whatever can be decoded is resumed.
 
 #include <array>
 #include <cstddef>

@@ -155,7 +155,7 @@ TEST(BrakeReaction, ShoesOnTheCarbodyLeaveTheBogiesAlone) {
   const auto within = [&](int k) { return m[k].normal[0] - m[k].normal[1]; };
   const auto between = [&](int k) { return m[k].normal[0] + m[k].normal[1] - m[k].normal[2] - m[k].normal[3]; };
   const double s = m[0].shoe[0];
-  // r S / l_w more on each wheelset of a bogie and less on its other, less some ten per cent.
+  // The reaction loads one wheelset of each bogie by r S / l_w and unloads the other one, less about ten per cent.
   EXPECT_NEAR(within(0) - within(2), 2.0 * 0.485 * s / 0.975, 0.2 * s);
   EXPECT_LT(within(0) - within(2), 2.0 * 0.485 * s / 0.975);
   EXPECT_LT(std::abs(within(1) - within(2)), 0.1 * s);
@@ -418,7 +418,7 @@ TEST(Readhesion, WheelsThatStandStayLockedWhereTheirShoesHoldThem) {
     EXPECT_NEAR(both[i], both_s[i], 0.03 * both_s[i] + 0.01) << "wheelset " << i + 1;
     EXPECT_NEAR(tread[i], tread_s[i], 0.03 * tread_s[i] + 0.01) << "wheelset " << i + 1;
   }
-  // With the friction of the vehicle's speed they turn again: nothing locked above 3 km/h.
+  // With the friction at the vehicle's speed the wheels turn again: none is locked above 3 km/h.
   for (const double locked : times(BrakeReaction::kNone, FrictionSpeed::kVehicle, 3.0 / 3.6)) {
     EXPECT_EQ(locked, 0.0);
   }

@@ -74,7 +74,7 @@ TEST(StoppingDistance, IsTheClosedFormAtConstantForce) {
   view.mean_grade = 0.005;  // uphill
   EXPECT_NEAR(StoppingDistance(p, SimpleTrain(), 50.0, 0.01, view, 0.0),
               2.0 * 2.0 / (2.0 * (0.1 + 0.005 * kGravity + 0.01)), 0.02);
-  // A brake that answers after 5 s: the way of those is run at the full speed.
+  // A brake that answers after 5 s: the distance of those is run at the full speed.
   DriversTrain slow = SimpleTrain();
   for (int second = 0; second <= 5; ++second) slow.application_share[second] = 0.0;
   slow.application_share[5] = 0.0;

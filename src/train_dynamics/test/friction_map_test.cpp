@@ -70,7 +70,7 @@ TEST(RailPatch, NeighboursRampIntoEachOther) {
   params.friction_patches = {Leaves(0.0, 50.0, 2.0), Leaves(50.0, 100.0, 6.0)};
   params.friction_patches[1].adhesion = Surface(0.1, 0.5, 0.3, 0.4, 0.2);
   const Track track(params);
-  // Over the longer ramp, and never up to the vehicle's own 0.4 between them.
+  // The longer ramp applies, and friction never reaches the vehicle's own 0.4 between the patches.
   EXPECT_EQ(track.SurfaceAt(46.999, kOwn).friction_coefficient, 0.05);
   EXPECT_NEAR(track.SurfaceAt(50.0, kOwn).friction_coefficient, 0.075, 1e-15);
   EXPECT_NEAR(track.SurfaceAt(48.5, kOwn).friction_decay_s_per_m, 0.225, 1e-15);

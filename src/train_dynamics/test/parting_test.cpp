@@ -60,8 +60,8 @@ TEST(Parting, CarriesNoTensionAfterwardsButPushes) {
     // The largest tension is the one at which it broke.
     EXPECT_GT(pulled.forces.Extremes()[0].tension_n, kStrength) << name;
     EXPECT_LT(pulled.forces.Extremes()[0].tension_n, 1.1 * kStrength) << name;
-    // What was stored is lost: all work that went in is dissipated. The laws with a spring apart from the friction miss
-    // what one interval changes.
+    // The stored energy is lost: all work done on the connection is dissipated. Laws whose spring is separate from the
+    // friction do not book the change within one interval.
     EXPECT_NEAR(pulled.Booked(), pulled.work_j, 0.02 * pulled.work_j) << name;
     EXPECT_NEAR(pulled.forces.Energy().potential, 0.0, 1e-9) << name;
     for (int i = 0; i < 100; ++i) EXPECT_EQ(pulled.Move(0.05), 0.0) << name;

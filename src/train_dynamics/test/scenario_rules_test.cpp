@@ -66,7 +66,7 @@ class ScenarioRules : public ::testing::Test {
     for (std::size_t at = 0; (at = text.find(prefix, at)) != std::string::npos;) text.erase(at, prefix.size());
     return text;
   }
-  /// Replaces a text that the file has once.
+  /// Replaces a text that occurs once in the file.
   void Edit(const std::string& name, const std::string& before, const std::string& after) const {
     std::ifstream in(root_ / name);
     std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -406,8 +406,8 @@ TEST_F(ScenarioRules, PressureTablesCountFromWhereTheyAreNamed) {
 
 TEST_F(ScenarioRules, WarnsOfExchangeIntervalsThatTheConnectionsDoNotStand) {
   EXPECT_EQ(WarningsOf("emergency", {"exchange_interval_s=0.01"}),
-            "--set exchange_interval_s=0.01: exchange_interval_s 0.01 is above 0.0066083, the longest that "
-            "train.connection stands at 900 kN: coupler forces may break down; take a shorter one");
+            "--set exchange_interval_s=0.01: exchange_interval_s 0.01 is above 0.0066083, the longest stable "
+            "one of train.connection at 900 kN: coupler forces may diverge; take a shorter one");
   EXPECT_EQ(WarningsOf("emergency", {"exchange_interval_s=0.005"}), "");
   EXPECT_EQ(WarningsOf("dip", {"exchange_interval_s=0.01", "record_interval_s=0.01"}), "")
       << "one wagon has no connection";
@@ -421,7 +421,7 @@ TEST_F(ScenarioRules, WarnsOfExchangeIntervalsThatTheConnectionsDoNotStand) {
     return WarningsOf("emergency", settings);
   };
   EXPECT_EQ(with("exchange_interval_s=0.01"), "");
-  EXPECT_NE(with("exchange_interval_s=0.02").find("above 0.011286, the longest that train.connection stands: "),
+  EXPECT_NE(with("exchange_interval_s=0.02").find("above 0.011286, the longest stable one of train.connection: "),
             std::string::npos);
 }
 

@@ -471,8 +471,8 @@ TEST(Symmetry, AWagonRunningBackwardsIsTheMirrorImage) {
   frictionless.friction_wedge->static_friction_coefficient = 0.0;
   frictionless.friction_wedge->kinetic_friction_coefficient = 0.0;
   EXPECT_LT(MirrorError(frictionless), 1e-9);  // rounding of 300 m over 50000 steps
-  // The wedges' solver goes from the front end to the rear and leaves 1e-9 of its forces. Stick and slip carry that on:
-  // with 0 to 3 kN of curving resistance in place of 1 kN, 2e-8 to 3e-6 m were seen.
+  // The wedges' solver sweeps from the front to the rear, with a residual of 1e-9 of its forces. Stick and slip amplify
+  // it: with 0 to 3 kN of curving resistance in place of 1 kN, 2e-8 to 3e-6 m were seen.
   EXPECT_LT(MirrorError(OreWagon()), 1e-5);
 }
 

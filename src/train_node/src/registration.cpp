@@ -27,7 +27,7 @@ bool Call(const char* method, XmlRpcValue& payload, const Arguments&... argument
   return ros::master::execute(method, request, response, payload, false);
 }
 
-/// A call of this node's own server, which ROS masters call. @return its answer; invalid if there is none
+/// Calls this node's own server, which ROS masters call. @return its answer; invalid if there is none
 XmlRpcValue CallSelf(const char* method, const XmlRpcValue& request) {
   std::string host;
   std::uint32_t port = 0;

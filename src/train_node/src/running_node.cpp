@@ -142,7 +142,7 @@ std::optional<std::pair<std::string, std::uint32_t>> Lookup(const std::string& s
   return std::pair(host, port);
 }
 
-/// What a node says of itself: the message of the reply of its service ~identify.
+/// A node's description of itself: the message in the reply of its service ~identify.
 std::string Identify(const std::string& node, std::chrono::milliseconds patience) {
   const std::string service = node + "/" + kIdentifyService;
   const auto place = Lookup(service);

@@ -62,7 +62,7 @@ class BagFile::Scan {
   /// One record; a chunk is entered, as its content is records. @return false at the end, or where the file is cut off
   bool Record() {
     const std::optional<std::string> header = TakeText(kLargestHeader);
-    // A record has a header: zeros are what a file system appends to a file in a loss of power.
+    // A record has a header: zeros come from a file system after a loss of power.
     if (!header || header->empty()) return false;
     const std::optional<Fields> fields = FieldsOf(*header);
     const std::optional<std::string> size = Take(sizeof(std::uint32_t));

@@ -207,7 +207,7 @@ int BagWriter::AddConnection(const std::string& topic, const std::string& type, 
   return static_cast<int>(id);
 }
 
-/// Appends a message's record but for its data. @return where these belong
+/// Appends a message's record without its data. @return where the data belong
 std::uint8_t* BagWriter::BeginMessage(int topic, ros::Time time, std::uint32_t size) {
   if (chunk_.empty()) open_.begin = time;
   open_.end = time;
@@ -260,7 +260,8 @@ void BagWriter::Truncate() {
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) Fail();
 }
 
-/// Writes what stands behind the last chunk - all connections and where the chunks are - and the header that tells.
+/// Writes the part after the last chunk (all connections and the positions of the chunks) and the header that refers to
+/// it.
 void BagWriter::WriteIndex() {
   Truncate();
   std::set<std::uint32_t> connections;
@@ -285,7 +286,7 @@ void BagWriter::WriteIndex() {
   WriteFileHeader(size_, connections.size());
 }
 
-/// @param index_position  0: none, which tools know as a bag that was cut off
+/// @param index_position  0: none, the sign of a truncated bag
 void BagWriter::WriteFileHeader(std::uint64_t index_position, std::size_t connections) {
   Bytes bytes;
   Append(bytes, std::string(kVersion));
@@ -325,8 +326,8 @@ void BagWriter::Close() {
     return true;
   };
   works([this] { WriteChunk(); });
-  // On a full disk the index takes the place of what did not fit; of whole chunks, the last first, if need be, but
-  // not of those that the run can be resumed behind.
+  // On a full disk the index replaces data that did not fit, and if needed also whole chunks, the last first, but none
+  // that a checkpoint covers.
   bool indexed = false;
   while (!(indexed = works([this] { WriteIndex(); })) && chunks_.size() > kept_chunks_) {
     size_ = chunks_.back().position;

@@ -32,7 +32,7 @@ class Source {
     return true;
   }
 
-  /// Takes a header and gives its stamp. (What number a message has is the publisher's business.)
+  /// Takes a header and gives its stamp. (The message's number depends on the publisher.)
   std::optional<ros::Time> TakeHeader() {
     std::uint32_t number = 0, seconds = 0, nanoseconds = 0, frame_id = 0;
     if (!Take(number) || !Take(seconds) || !Take(nanoseconds) || !Take(frame_id) || left() < frame_id)
@@ -57,7 +57,7 @@ class Source {
   std::size_t at_ = 0;
 };
 
-/// What an element of an array belongs to.
+/// The owner of an array's element.
 struct Owner {
   int vehicle = 0;
   std::string text;
@@ -97,7 +97,7 @@ const std::vector<std::string>& FieldNames() {
 /// they differ from the recorded ones.
 class Comparison {
  public:
-  /// What the elements of a field belong to. @param size  of an array; 0: a number by itself
+  /// The owner of a field's elements. @param size  of an array; 0: a number by itself
   using OwnersOf = std::function<Owners(const std::string& name, std::size_t size)>;
 
   Comparison(const Bytes& recorded, const std::vector<std::string>& names, OwnersOf owners_of)

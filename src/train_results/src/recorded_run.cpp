@@ -32,7 +32,7 @@ std::optional<std::string> TextOf(const Bytes& message) {
 /// "/train" of "/train/state".
 std::string NamespaceOf(const std::string& topic) { return topic.substr(0, topic.find_last_of('/')); }
 
-/// The namespace of the train that is asked for, or of the only one.
+/// The namespace of the requested train, or of the only one.
 std::string FindTrain(const BagFile& bag, const std::string& asked) {
   std::set<std::string> trains;
   for (const BagFile::Topic& topic : bag.topics()) {

@@ -47,7 +47,8 @@ std::string CommandsUntil(double time_s, const ScenarioParams& scenario) {
   return text.empty() ? "none" : text.substr(0, text.size() - 1);
 }
 
-/// What has been cannot be changed: neither what the state is of and counts by, nor the start, nor what the driver did.
+/// Checks that the past is unchanged: the structure and time grid of the state, the start, and the driver's commands so
+/// far.
 void CheckBranch(const LoadedScenario& now, const LoadedScenario& then, double time_s) {
   const auto keep = [](const char* key, const auto& value, const auto& was) {
     if (value == was) return;

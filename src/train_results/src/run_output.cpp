@@ -64,7 +64,7 @@ void MakeFolder(const fs::path& folder) {
   throw std::runtime_error("the folder " + folder.string() + " cannot be made for the results: " + reason);
 }
 
-/// Clears it of the results of an earlier run, but of nothing that a user may have put there.
+/// Removes the results of an earlier run from it, but no files of the user.
 void ClearFolder(const fs::path& folder) {
   const bool ours = HasMark(folder);
   std::vector<fs::path> results;
@@ -109,13 +109,13 @@ void WriteReplay(ScenarioParams scenario, const train_dynamics::CommandSchedule&
                                         strict_config::Write(scenario));
 }
 
-/// What recorders write and go on with.
+/// The recorders' data for continuing a run.
 bool IsRecord(const std::string& name) {
   static const std::regex pattern("train\\.bag(\\.active)?|branched_from|(train_history|pressures|wagon_[0-9]+)\\.csv");
   return std::regex_match(name, pattern);
 }
 
-/// Bags as FILE.active: a copy of one is no whole bag, least of all where the disk gets full.
+/// Bags as FILE.active: a copy is not a complete bag, in particular if the disk becomes full.
 void CopyRecords(const fs::path& from, const fs::path& to) {
   for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
     const std::string name = entry.path().filename().string();
@@ -196,7 +196,7 @@ RunOutput::RunOutput(const OutputOptions& options, const ResumedRun& run)
   } catch (const train_dynamics::SnapshotError& e) {
     throw std::invalid_argument((run.folder / kCheckpointFile).string() + " " + e.what());
   }
-  // Both have seen that they can: nothing was changed before.
+  // Both have checked that they can; nothing has been changed so far.
   if (csv_ != nullptr) csv_->GoOn();
   if (bag_ != nullptr) bag_->GoOn();
   if (run.is_branch) WriteFile(folder_ / kBranchFile, TextOf(Encode(run.checkpoint)));

@@ -41,7 +41,7 @@ Json Partings(const TrainMaster& master) {
   return list;
 }
 
-/// Of a train with external vehicles: which node moves which.
+/// For a train with external vehicles: which node moves which vehicles.
 Json External(const train_dynamics::ScenarioParams& scenario) {
   Json nodes = Json::array();
   for (const train_dynamics::Rank& rank : train_dynamics::ExternalRanks(scenario.train))
@@ -49,7 +49,7 @@ Json External(const train_dynamics::ScenarioParams& scenario) {
   return nodes;
 }
 
-/// Those that were given by conditions, or to the running train.
+/// The commands that were given by conditions, or live.
 Json Commands(const RunSummary& summary, const TrainMaster& master) {
   Json list = Json::array();
   for (const train_dynamics::GivenCommand& given : master.schedule().Given()) {
@@ -146,7 +146,7 @@ std::string SummaryJson(const RunSummary& summary, const TrainMaster& master, do
   json["vehicles"] = summary.vehicles();
   if (Json external = External(scenario); !external.empty()) {
     json["external"] = std::move(external);
-    // What this program can tell of them.
+    // The values of external vehicles that this program knows.
     json["external_covered"] = {
         {"state_digest", "motion of the coupler heads at records, and the digest that a node gives"},
         {"energy", "work of the couplers on them"}};

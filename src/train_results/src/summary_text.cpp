@@ -27,7 +27,7 @@ std::string Place(const Json& of_connection) {
                      Number(of_connection, "time_s"));
 }
 
-/// Where the train is at the end, and how fast.
+/// Position and speed of the train at the end.
 std::string End(const Json& summary) {
   if (Holds(summary, "stopped")) {
     return fmt::format("stands after {:.1f} s and {:.1f} m", Number(summary, "stop_time_s"),

@@ -10,7 +10,7 @@ namespace {
 using train_dynamics::TrainRecord;
 using Clock = std::chrono::steady_clock;
 
-/// Does something with the results. @throws WriteError for whatever goes wrong
+/// Executes an action on the results. @throws WriteError for any failure
 template <class Action>
 void Write(const Action& action) {
   try {

@@ -38,7 +38,7 @@ double FreeMemory() {
   return static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Of the file system on which a folder is, or will be. @return infinity if that cannot be told
+/// Of the file system on which a folder is, or will be. @return infinity if unknown
 double FreeSpace(const std::filesystem::path& folder) {
   std::filesystem::path above = std::filesystem::absolute(folder);
   while (!std::filesystem::exists(above) && above.has_relative_path()) above = above.parent_path();
@@ -47,7 +47,7 @@ double FreeSpace(const std::filesystem::path& folder) {
   return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
-/// The connections between vehicles and how long an exchange each kind stands.
+/// The connections between vehicles, and the longest stable exchange of each kind.
 std::string ConnectionLimits(const LoadedScenario& scenario) {
   const double head_kg = LightestCouplerHead(scenario.params);
   std::vector<std::string> limits;
@@ -135,7 +135,7 @@ void WarnOfRun(const CheckOptions& options, const RunPrediction& run, std::vecto
   }
 }
 
-/// What speaks against so many wagon nodes; machines are taken to be like this one.
+/// Reasons against this number of wagon nodes; all machines are assumed to be like this one.
 void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::string>& warnings) {
   const auto warn = [&](const std::string& text) {
     warnings.push_back(fmt::format("--nodes {}: {}", options.nodes, text));
@@ -177,7 +177,7 @@ void WarnOfNodes(const CheckOptions& options, int vehicles, std::vector<std::str
 
 namespace {
 
-/// What programs ask of a scenario; units stand in the names.
+/// The values of a scenario for other programs; units are in the names.
 std::string Json(const LoadedScenario& scenario, const RunPrediction& run, const std::vector<std::string>& warnings) {
   const ScenarioParams& p = scenario.params;
   double mass_kg = 0.0, length_m = 0.0;

@@ -48,7 +48,7 @@ Json MapSchema(const std::vector<KeyDescription>& keys, Extent extent, bool may_
 
 Json TypeOf(const KeyDescription& key, Extent extent) {
   const auto or_nothing = [&key](Json schema) {
-    // What need not be given may also be `null`, whatever a base says.
+    // An optional value may also be `null`, whatever its base gives.
     return key.may_be_left_out ? Json{{"anyOf", {std::move(schema), {{"type", "null"}}}}} : schema;
   };
   switch (key.kind) {
@@ -110,7 +110,7 @@ Json Not(Json schema) { return {{"not", std::move(schema)}}; }
 
 /// The schema of maps for which a condition does not hold.
 ///
-/// Where a map only changes a base, nothing is known of a key that it does not give: the schema does not hold then.
+/// If a map only changes a base, a key that it does not give is unknown: the schema does not hold then.
 Json Fails(const KeyCondition& condition, const std::vector<KeyDescription>& keys, Extent extent) {
   const KeyDescription& selector = Find(keys, condition.key);
   const std::string& first = condition.values.front();

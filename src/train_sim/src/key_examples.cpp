@@ -117,7 +117,7 @@ class Collector {
     }
   }
 
-  /// What no file has and what has no default: of the same keys elsewhere in files of the kind, or made.
+  /// Examples of keys that no file has and that have no default: from the same keys elsewhere in the kind, or made.
   void FillIn(const std::vector<KeyDescription>& keys, const std::string& path) {
     for (const KeyDescription& key : keys) {
       const std::string below = path + "." + key.key;

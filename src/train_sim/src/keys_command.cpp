@@ -155,7 +155,7 @@ class Reference {
     return found;
   }
 
-  /// Complains about a path that names nothing.
+  /// Reports a path that names no key.
   [[noreturn]] void Refuse(const std::string& path) const {
     std::vector<std::string> roots, near, all;
     const std::string above = path.substr(0, path.find_last_of('.'));

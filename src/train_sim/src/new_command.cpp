@@ -23,7 +23,8 @@ constexpr Template kTemplates[] = {
     {"README.md", nullptr,
      R"(`train_sim check scenarios/stop.yaml` tells what the scenario is and whether it can run.
 `train_sim run scenarios/stop.yaml --out results/stop` runs it; `rosrun train_brake report results/stop` draws it.
-`rosrun train_brake run scenarios/stop.yaml results/graph` runs it as a ROS graph; `roslaunch launch/stop.launch` does in a graph of yours.
+`rosrun train_brake run scenarios/stop.yaml results/graph` runs it as a ROS graph; )"
+     R"(`roslaunch launch/stop.launch` does in a graph of yours.
 The train is `trains/mine.yaml`, the route `tracks/mine.csv`; `train_sim route tracks/mine.csv` tells what the route is.
 `train_sim keys` prints all keys that these files can have; shipped parts are used by name, as `vehicle: tank`.
 )"},

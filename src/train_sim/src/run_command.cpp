@@ -81,7 +81,7 @@ void WarnOfResidual(const train_run::TrainRun& run) {
       share, kAim);
 }
 
-/// For people: what to do next.
+/// The next steps for the user.
 void TellWhereResultsAre(const RunOptions& options) {
   const std::string folder = train_console::ShellWord(options.out.empty() ? options.resume : options.out);
   if (options.out.empty() && options.resume.empty()) {
@@ -112,7 +112,7 @@ int Run(const LoadedScenario& scenario, const RunOptions& options, const train_d
   } else {
     train_console::Print("{}", train_results::SummaryText(json));
     TellWhereResultsAre(options);
-    if (run.exit_code() == train_run::kFailure) train_console::Print("{}", json);  // it may be nowhere else
+    if (run.exit_code() == train_run::kFailure) train_console::Print("{}", json);  // the result may exist nowhere else
   }
   Print(run.Warnings());
   const double end_s = run.master().time_s();

@@ -98,7 +98,7 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
     prediction.bag_bytes = bag.bytes();
     queue_bytes = kQueuedRecords * bag.bytes_per_record();
   });
-  // By batches, of which the median is taken: other work on the machine spoils single ones.
+  // By batches, of which the median is taken: other load of the machine disturbs single ones.
   const int batch = std::min(params.ExchangesPerRecord(), 50);
   std::vector<double> batch_s;
   double this_batch_s = 0.0, all_s = 0.0;
@@ -111,7 +111,7 @@ RunPrediction PredictRun(const LoadedScenario& scenario, int threads) {
     batch_s.push_back(this_batch_s);
     this_batch_s = 0.0;
   };
-  // Ends with a batch, but for the run's last.
+  // Ends with a batch, except at the end of the run.
   hooks.ends = [&] { return this_batch_s == 0.0 && (master.exchange() >= kExchanges || all_s > kLongest); };
   run.Go(hooks);
   prediction.fault = run.fault();

@@ -46,10 +46,8 @@ constexpr const char* kDescription =
     "\n"
     "Exit codes: 0 done; 1 a result could not be written; 2 bad arguments or configuration; 3 the simulation "
     "broke\n"
-    "down; 130 interrupted (what was simulated is saved and marked incomplete). Of verify: 0 the same; 5 "
-    "different; 6 "
-    "nothing\n"
-    "can be told; 7 the same as far as the recording goes.";
+    "down; 130 interrupted (results so far are saved and marked incomplete). Of verify: 0 the same; 5 different; 6\n"
+    "not comparable; 7 the same as far as the recording goes.";
 
 /// A time [s] that is a finite number >= 0. (CLI::NonNegativeNumber takes nan.)
 const CLI::Validator kSeconds(
@@ -72,7 +70,7 @@ CLI::Validator Count(int least, int most) {
       fmt::format("{} to {}", least, most));
 }
 
-/// A path. An empty one is that of a variable of the shell which is not set: nothing may be lost by that.
+/// A path. An empty one comes from an unset variable of the shell, and must not lead to loss of data.
 const CLI::Validator kPath(
     [](const std::string& text) { return text.empty() ? "is empty: is a variable of the shell not set?" : ""; }, "");
 
@@ -88,7 +86,7 @@ CLI::Option* AddInput(CLI::App* command, const char* name, const char* help, std
   return input;
 }
 
-/// @throws std::invalid_argument naming the likely one
+/// @throws std::invalid_argument if the command is unknown; names the likely one
 void RefuseUnknownCommand(const CLI::App& app, int argc, char** argv) {
   const std::string given = argc > 1 ? argv[1] : "";
   if (given.empty() || given[0] == '-') return;
@@ -126,10 +124,10 @@ int Main(int argc, char** argv) {
   app.set_version_flag("--version", "train_sim " TRAIN_BRAKE_VERSION);
   app.require_subcommand(1);
 
-  CLI::App* run = app.add_subcommand("run", "simulate a scenario, and tell what it came to");
+  CLI::App* run = app.add_subcommand("run", "simulate a scenario, and print the main results");
   AddInput(run, "SCENARIO", "scenario file", options.scenario, options.overrides)->required(false);
   run->add_option("--resume", options.resume,
-                  "folder of a run that goes on from its checkpoint, instead of a SCENARIO; with --set and another "
+                  "folder of a run to resume from its checkpoint, instead of a SCENARIO; with --set and another "
                   "--out: a what-if run from there")
       ->check(kPath);
   run->add_option("--checkpoint-interval", options.checkpoint_interval_s,
@@ -150,9 +148,8 @@ int Main(int argc, char** argv) {
   run->add_flag("--json", options.json,
                 "print the contents of summary.json, for programs, in place of the lines for people");
   run->add_flag("--twin", options.twin,
-                "run the train once more with its start speed changed by 1e-9 km/h: the summary tells to how "
-                "many newtons "
-                "the maxima are determined");
+                "run the train once more with its start speed changed by 1e-9 km/h: the summary says to how many "
+                "newtons the maxima are determined");
   run->callback([&] {
     if (options.twin && !options.resume.empty())
       throw CLI::ValidationError("--twin", "is of a run from its start, not of one that is resumed");

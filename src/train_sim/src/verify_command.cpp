@@ -54,7 +54,7 @@ fs::path FolderOf(const fs::path& recording) {
   return fs::is_directory(recording) ? recording : recording.parent_path();
 }
 
-/// Whether what lies in its folder is of the same run: a folder of results, or the bag in it.
+/// Whether the files in its folder belong to the same run: a folder of results, or the bag in it.
 bool IsOfARun(const fs::path& recording) { return fs::is_directory(recording) || recording.filename() == "train.bag"; }
 
 /// A scenario without its comments and without the place of its pressure table, which a run copies beside its
@@ -68,14 +68,14 @@ std::string WithoutPlaces(const std::string& scenario) {
   return kept;
 }
 
-/// What was run: the folder's config.yaml, or what the bag holds, or the config.yaml beside it.
+/// The scenario of the run: the folder's config.yaml, or the one in the bag, or the config.yaml beside the bag.
 LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
   using train_dynamics::config::LoadScenario;
   if (!options.config.empty()) return LoadScenario(options.config, {});
   const fs::path beside = FolderOf(options.recording) / "config.yaml";
   const std::optional<std::string> within = recorded.Scenario();
-  // A folder's config.yaml may name files beside it, which a bag cannot hold, so it is taken, if it is still the run's.
-  // (The bag of a branch begins with what the other run had.)
+  // A folder's config.yaml may name files beside it, which a bag cannot hold; so it is used if it is still the run's.
+  // (The bag of a branch begins with the other run's scenario.)
   const bool is_beside = IsOfARun(options.recording) && fs::exists(beside);
   const bool is_branch = fs::exists(FolderOf(options.recording) / train_results::kBranchFile);
   if (within && is_beside && !is_branch &&
@@ -91,7 +91,7 @@ LoadedScenario ScenarioOf(const VerifyOptions& options, RecordedRun& recorded) {
       "the bag does not hold its scenario, and there is no config.yaml beside it; give it with --config");
 }
 
-/// Where the run left another one, if it did.
+/// The checkpoint at which a branch left the other run, if it is one.
 std::optional<train_dynamics::TrainCheckpoint> BranchOf(const fs::path& recording) {
   const fs::path file = FolderOf(recording) / train_results::kBranchFile;
   if (!fs::exists(file)) return std::nullopt;
@@ -112,7 +112,7 @@ class Comparison {
  public:
   Comparison(RecordedRun& recorded, int vehicles) : recorded_(recorded), vehicles_(vehicles) {}
 
-  /// Leaves out what the bag has up to the checkpoint with which the repetition begins.
+  /// Skips the bag's messages up to the checkpoint with which the repetition begins.
   void BeginAt(const train_dynamics::TrainCheckpoint& checkpoint, const ScenarioParams& params);
 
   /// An observer of the repetition's TrainMaster.
@@ -121,7 +121,7 @@ class Comparison {
   bool Differs() const { return !differences_.empty(); }
   bool Finished() const { return Differs() || recorded_.state().done(); }
   long records() const { return records_; }  ///< that are the same
-  /// What the bag has of other topics less than of the state, as text; empty: nothing.
+  /// Messages of other topics that are missing beside those of the state, as text; empty: none.
   std::string Missing() const;
   /// The first record that differs, the vehicle and the quantity.
   std::string Verdict() const;
@@ -292,7 +292,7 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   train_run::CatchInterrupts();
   if (branch) comparison.BeginAt(*branch, params);
   train_run::RunHooks hooks;
-  // What came live is given again, each at its exchange; what a branch took over is in its checkpoint.
+  // Live commands are given again, each at its exchange; those that a branch took over are in its checkpoint.
   const std::vector<train_dynamics::DriverCommand> live = recorded.LiveCommands();
   std::size_t next_live = 0;
   while (next_live < live.size() && *live[next_live].exchange < static_cast<double>(first)) ++next_live;
@@ -340,8 +340,8 @@ int Repeat(const VerifyOptions& options, RecordedRun& recorded) {
   return train_run::kSuccess;
 }
 
-/// "train_brake 0.1.0": the program that recorded a run, by its bag or the summary.json beside it; empty where neither
-/// tells.
+/// "train_brake 0.1.0": the program that recorded a run, by its bag or the summary.json beside it; empty if neither has
+/// it.
 std::string WriterOf(const fs::path& recording) {
   try {
     const std::string writer = train_results::WriterOf(BagOf(recording));
@@ -350,11 +350,11 @@ std::string WriterOf(const fs::path& recording) {
     const auto json = nlohmann::json::parse(train_results::ReadPlainFile(summary, 1 << 20));
     return "train_brake " + json.at("version").get<std::string>();
   } catch (const std::exception&) {
-    return "";  // what is wrong with them has been told
+    return "";  // their errors have been reported
   }
 }
 
-/// Tells what to do with the recording of another version.
+/// Says how to handle a recording of another version.
 void TellWriter(const std::string& recording) {
   const std::string writer = WriterOf(recording), own = "train_brake " TRAIN_BRAKE_VERSION;
   if (writer.empty() || writer == own) return;

@@ -123,8 +123,8 @@ class OwnFiles(unittest.TestCase):
         lists = self.write(
             "lists.yaml",
             SCENARIO.format(
-                train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, count: 2}, {vehicle: ./simple.yaml, count: 3, "
-                "load_fraction: 0}]}" % COUPLER,
+                train="{name: t, connection: %s, consist: [{vehicle: ./simple.yaml, count: 2}, "
+                "{vehicle: ./simple.yaml, count: 3, load_fraction: 0}]}" % COUPLER,
                 start=0,
             ),
         )
@@ -219,7 +219,8 @@ class Examples(unittest.TestCase):
                 self.assertIsNone(summary["left_route_s"])
 
     def test_what_is_resolved_can_be_read_again(self):
-        """A run's config.yaml is such a text: resume, verify and wagon nodes read it. Every scenario, and every part in one."""
+        """A run's config.yaml is such a text: resume, verify and wagon nodes read it. Every scenario, and every part in
+        one."""
         scenarios = [(file, []) for file in sorted((CONFIG / "scenarios").glob("*.yaml"))]
         for folder, scenario, key in (
             ("brakes", "emergency_ab", "brake"),

@@ -317,7 +317,8 @@ class TrainSimTest(unittest.TestCase):
         done = train_sim("check", EMERGENCY, "--set", f"pressure_table={table}")
         self.assertEqual(2, done.returncode)
         self.assertIn(
-            "table.csv:1: has no columns vehicle_2_pa, vehicle_3_pa, vehicle_4_pa, ...: of 242 vehicles 241 have no pressures",
+            "table.csv:1: has no columns vehicle_2_pa, vehicle_3_pa, vehicle_4_pa, ...: of 242 vehicles 241 have no "
+            "pressures",
             done.stderr,
         )
         self.assertEqual(1, len([line for line in done.stderr.splitlines() if "vehicle_" in line]), done.stderr)
@@ -492,7 +493,7 @@ class TrainSimTest(unittest.TestCase):
         scenario = self.write("mine.yaml", f"base: {EMERGENCY}\nexchange_interval_s: 0.01\n")
         _, warnings = self.check(scenario)
         self.assertIn(
-            "mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest that train.connection stands",
+            "mine.yaml:2: exchange_interval_s 0.01 is above 0.0066083, the longest stable one of train.connection",
             warnings,
         )
         self.assertIn("take a shorter one", warnings)
@@ -1111,8 +1112,8 @@ class TrainSimTest(unittest.TestCase):
         self.assertIn("falls from exchange 100 to 0: the bag holds more than one run", self.verify(self.out, code=6))
 
     def test_verify_names_the_version_that_wrote_a_recording(self):
-        """Of a bag whose messages another version has defined otherwise, and of one with other bits; the bag tells, or else
-        summary.json. Nothing is said of this version's own."""
+        """Of a bag whose messages another version has defined otherwise, and of one with other bits; the bag tells, or
+        else summary.json. Nothing is said of this version's own."""
         self.run_ok(DIP, "--out", self.out, "--set", "duration_s=0.1")
         own = train_sim("--version").stdout.split()[1]
         bag, summary = self.out / "train.bag", self.out / "summary.json"

@@ -19,7 +19,7 @@ bool SharedSlot::Wait(double timeout_s) {
   ExchangeHead& head = memory_.head();
   const std::uint32_t seen = head.requests.count();
   if (memory_.request(slot_).call() != served_) return true;
-  // There may be a core for each thread of the ranks; but one of them is the master's, who is the next to work.
+  // There may be a core for each thread of the ranks; but one of them is the master's, which works next.
   const bool has_core = head.threads <= cores_ && head.master_core != static_cast<std::uint32_t>(sched_getcpu());
   const bool is_notified = has_core ? spin_.Spin(head.requests, seen) : YieldUntil(head.requests, seen, head.yields);
   if (!is_notified) head.requests.Wait(seen, timeout_s);

@@ -82,7 +82,7 @@ std::string StepService::uri() const {
   return "rosrpc://" + ros::network::getHost() + ":" + std::to_string(listener_->getServerPort());
 }
 
-/// Tells the ROS master that the service is there, or is not any more.
+/// Registers the service at the ROS master, or unregisters it.
 void StepService::Tell(const char* method, bool is_there) const {
   XmlRpc::XmlRpcValue request, response, payload;
   request[0] = ros::this_node::getName();
@@ -108,7 +108,7 @@ void StepService::Read(const ros::TransportPtr& transport) {
   if (found == clients_.end()) return;
   const ClientPtr client = found->second;  // lives on here if it disconnects
   std::vector<std::uint8_t>& in = client->in;
-  // Room grows with what has come, not with what is announced.
+  // The buffer grows with the received bytes, not with the announced size.
   in.resize(std::max({in.size(), kBuffer, 2 * client->received}));
   const std::int32_t count =
       transport->read(in.data() + client->received, static_cast<std::uint32_t>(in.size() - client->received));

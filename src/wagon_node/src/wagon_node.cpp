@@ -10,7 +10,7 @@ namespace {
 
 using train_console::Presentable;
 
-constexpr double kTick = 0.25;              // [s] between two looks at whether there is a master, while nothing comes
+constexpr double kTick = 0.25;              // [s] between two checks for a master, while there are no calls
 constexpr int kQueue = 100;                 // one second of simulated time
 constexpr double kQuestionsPerTimeout = 3;  // to the ROS master, by a node that waits for its first run
 
@@ -115,7 +115,7 @@ void WagonNode::UseSlot(const train_brake_msgs::ConfigureRequest& offer) {
   configured_.notify_one();
 }
 
-/// Serves the calls in the slot, until none has come for a tick.
+/// Serves the calls in the slot until none has arrived for a tick.
 void WagonNode::ServeSlot() {
   std::unique_lock<std::mutex> lock(mutex_);
   const std::shared_ptr<SharedSlot> slot = slot_;

@@ -76,7 +76,7 @@ std::string Check(const char* name, const std::vector<double>& values, std::size
 
 using Patches = std::vector<train_dynamics::FrictionPatchParams>;
 
-/// Whether the patches of a request begin with those that have come before.
+/// Whether the patches of a request begin with those of earlier requests.
 bool BeginWith(const Patches& known, const std::vector<double>& numbers) {
   if (numbers.size() < 3 * known.size()) return false;
   for (std::size_t i = 0; i < known.size(); ++i) {

@@ -10,7 +10,7 @@ class ExchangeStatistics {
  public:
   void Add(double wall_s);
 
-  /// The time that this share (0 ... 1) of the last exchanges did not exceed [s]; 0 without any.
+  /// Quantile of the wall time of the last exchanges [s]: a share of them (0 ... 1) took no longer; 0 before the first.
   double Quantile(double share) const;
 
  private:

@@ -11,26 +11,26 @@
 
 namespace ltd_master {
 
-/// Commands of a driver who sits in another node: received at any time, by any thread, given to the train at the start
-/// of an exchange, in the order of their arrival.
+/// Commands of a driver in another node: received at any time, by any thread, and given to the train at the start of an
+/// exchange, in the order of their arrival.
 class LiveCommands {
  public:
   /// Keeps a reference.
   explicit LiveCommands(const train_dynamics::ScenarioParams& scenario) : scenario_(scenario) {}
 
   /// A command for the start of an exchange.
-  /// @throws std::invalid_argument  naming what is wrong: no such kind, a number out of range, no such locomotive
+  /// @throws std::invalid_argument for an unknown kind, a number out of range, or an unknown locomotive; names it
   train_dynamics::DriverCommand Judge(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange) const;
 
-  /// @return the exchange at whose start it is given at the earliest
-  /// @throws std::invalid_argument as Judge, and for a patch of rail too many
+  /// @return the earliest exchange at the start of which it can be given
+  /// @throws std::invalid_argument as Judge, and if there are too many patches of rail
   std::uint64_t Receive(const train_brake_msgs::DriverCommand& message);
 
-  /// The run's side: those that are due before the exchange that begins now; it is the one of this number.
-  /// @param patches  TrainMaster::patches(), without those that are taken now
+  /// For the run: the commands that are due before this exchange, which begins now.
+  /// @param patches  TrainMaster::patches(), without those returned here
   std::vector<train_dynamics::DriverCommand> Take(std::uint64_t exchange, std::size_t patches);
 
-  /// Of all commands taken so far: the most exchanges between its receipt and its effect, and how many commands.
+  /// Of all commands taken so far: the largest number of exchanges between receipt and effect, and their count.
   std::uint64_t largest_latency() const;
   std::uint64_t count() const;
 

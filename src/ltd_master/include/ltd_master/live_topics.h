@@ -18,10 +18,10 @@ namespace ltd_master {
 ///   live/state  live/in_train_forces  live/brake_pressures  live/wagon_NNN/state
 ///                            the same messages as without `live/`, where every record comes
 ///
-/// All are latched: a subscriber that comes late, or in a pause, gets the newest.
+/// All are latched: a late subscriber, or one during a pause, gets the newest message.
 class LiveTopics {
  public:
-  /// The run as its loop sees it, which is not in the record.
+  /// The state of the run's loop, which is not part of the record.
   struct Pace {
     std::uint8_t state;  ///< of RunStatus
     double real_time_factor, wanted_real_time_factor;
@@ -32,7 +32,7 @@ class LiveTopics {
   /// An observer of the run's TrainMaster: publishes the record, or keeps it until Settle() or the next one.
   void Show(const train_dynamics::TrainRecord& record, const Pace& pace);
 
-  /// Publishes what was held back, and the pace if it has changed. For a run that waits or has ended.
+  /// Publishes what was held back, and the pace if it has changed: for a run that is paused or has ended.
   void Settle(const Pace& pace);
 
   /// The newest record, whether it was published or not; null before the first. Refers to memory of this object.

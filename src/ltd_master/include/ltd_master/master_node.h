@@ -37,13 +37,13 @@ namespace ltd_master {
 /// The private parameters of the node; launch/train.launch documents them.
 struct MasterOptions {
   std::string scenario;
-  int vehicles = 0;   ///< that the launch file expects in the train; 0 = any number
-  int ranks = 0;      ///< wagon nodes; 0 = the vehicles are in the master's own process
-  std::string nodes;  ///< wagon nodes that the user of the launch file has asked for; "auto" or empty: any number
+  int vehicles = 0;          ///< number of vehicles that the launch file expects; 0 = any
+  int ranks = 0;             ///< wagon nodes; 0 = the vehicles are in the master's own process
+  std::string nodes;         ///< wagon nodes that the user requested from the launch file; "auto" or empty: any number
   bool global_clock = true;  ///< this train's time is also that of /clock
   std::vector<std::string> overrides;
   train_results::OutputOptions output;
-  std::string resume;  ///< folder of a run that goes on from its checkpoint
+  std::string resume;  ///< folder of a run to resume from its checkpoint
   double real_time_factor = 0.0;
   bool start_paused = false;
   double startup_timeout_s = 60.0;
@@ -54,7 +54,7 @@ struct MasterOptions {
   LockstepDriverOptions driver;
 
   /// @param train_namespace  of the node
-  /// @throws std::invalid_argument naming all parameters that are wrong or not known
+  /// @throws std::invalid_argument if parameters are wrong or unknown; names all of them
   static MasterOptions FromParameters(train_node::NodeParameters& parameters, const std::string& train_namespace);
 };
 
@@ -80,14 +80,15 @@ class MasterNode {
   std::unique_ptr<LockstepDriver> MakeDriver();
   /// Paced by control_, with diagnostics each second. @throws WaitInterrupted, RankFailure, DriverFailure
   void Go(train_run::TrainRun& run);
-  /// What drivers do at the start of the next exchange: live commands first, then the driver in lockstep.
+  /// Gives the drivers' commands for the start of the next exchange: live commands first, then the driver in lockstep.
   void GiveCommands(train_run::TrainRun& run);
   void AskDriver(train_run::TrainRun& run);
   train_brake_msgs::DriverView ViewOf(train_run::TrainRun& run, bool sees_couplers) const;
-  /// For cabs: at most 20 times per second of wall time, and only while there are subscribers.
+  /// Publishes the driver's view for cabs: at most 20 times per second of wall time, and only while there are
+  /// subscribers.
   void ShowView(train_run::TrainRun& run);
   void Publish(const train_dynamics::TrainRecord& record);
-  /// While the train stands: what those need who come now.
+  /// During a pause: publishes what new subscribers need.
   void Settle(double simulated_s);
   void PublishDiagnostics(const train_dynamics::TrainMaster& master, const char* state);
   LiveTopics::Pace PaceNow() const;
@@ -109,9 +110,9 @@ class MasterNode {
   RunControl control_;
   std::uint64_t run_id_;
   RosTransport* ranks_ = nullptr;           ///< null: no wagon nodes
-  std::unique_ptr<LockstepDriver> driver_;  ///< null: none is asked
+  std::unique_ptr<LockstepDriver> driver_;  ///< null: no driver in lockstep
   ExchangeStatistics statistics_;
-  std::vector<unsigned> last_count_;  ///< [rank] how often it replied last
+  std::vector<unsigned> last_count_;  ///< [rank] how often it was the last to reply
   unsigned late_exchanges_ = 0;
   double real_time_factor_ = 0.0;  ///< over the last second of wall time
   std::atomic<double> simulated_s_{0.0};

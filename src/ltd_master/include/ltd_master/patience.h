@@ -8,7 +8,7 @@
 
 namespace ltd_master {
 
-/// A wait was ended on request (Ctrl-C, stop) before what it waited for came.
+/// A wait was ended on request (Ctrl-C, stop) before its condition was met.
 class WaitInterrupted : public std::runtime_error {
  public:
   WaitInterrupted() : std::runtime_error("interrupted while waiting for other nodes") {}
@@ -17,7 +17,7 @@ class WaitInterrupted : public std::runtime_error {
 /// A wait for other nodes: its stages of 1, 3 and 10 s, each worth a warning, its deadline and its interruption.
 class Patience {
  public:
-  /// For how long to wait before the time is checked [s].
+  /// Longest wait between two checks of the time [s].
   static constexpr double kCheckPeriod = 0.1;
   static constexpr std::array<double, 3> kStages = {1.0, 3.0, 10.0};  ///< [s]
 
@@ -26,7 +26,7 @@ class Patience {
   Patience(double deadline_s, const std::function<bool()>& interrupted)
       : deadline_s_(deadline_s), interrupted_(interrupted) {}
 
-  /// Looks at the watch, and calls warn(seconds) where a new stage is reached.
+  /// Checks the time, and calls warn(seconds) when a new stage is reached.
   /// @return whether the deadline is still ahead
   /// @throws WaitInterrupted
   template <class Warn>

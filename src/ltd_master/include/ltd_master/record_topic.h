@@ -10,9 +10,9 @@
 
 namespace ltd_master {
 
-/// A topic of every record that also serves those who come while the train stands: they get the record at which it
-/// stands, so that a recorder that is started in a pause has all that follows from there. (A latched topic would do the
-/// same, but convert and serialise every record even without subscribers.)
+/// A topic of every record that also serves subscribers that arrive during a pause: they get the last record, so that a
+/// recorder started in a pause has everything from there on. (A latched topic would do the same, but convert and
+/// serialise every record even without subscribers.)
 template <class Message>
 class RecordTopic {
  public:
@@ -33,7 +33,7 @@ class RecordTopic {
     if (publisher_.getNumSubscribers() > 0) publisher_.publish(make());
   }
 
-  /// The train stands: who comes before the next record gets this last one.
+  /// The run is paused: subscribers that arrive before the next record get this last one.
   template <class Make>
   void Hold(const Make& make) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -41,7 +41,7 @@ class RecordTopic {
   }
 
  private:
-  std::mutex mutex_;  ///< of the thread of the run and of those that hear of subscribers
+  std::mutex mutex_;  ///< between the thread of the run and the threads that handle subscribers
   std::optional<Message> held_;
   ros::Publisher publisher_;
 };

@@ -9,12 +9,12 @@
 
 namespace ltd_master {
 
-/// Pause, resume, single steps and the pace of a run, asked for from other threads.
+/// Pause, resume, single steps and the pace of a run, requested by other threads.
 ///
 ///   running --Pause--> paused --Resume--> running
 ///   paused  --Step(N)--> paused again N exchanges later, or sooner: Pause ends the steps, too
 ///
-/// Replies say what is true when they are given: a pause is reported once the run stands still.
+/// Replies are true when they are given: a pause is reported once the run has stopped.
 class RunControl {
  public:
   /// Whether a request was carried out, and a sentence on what became of it.
@@ -26,27 +26,27 @@ class RunControl {
   /// @param real_time_factor  simulated over wall time to keep to; 0 = as fast as possible
   RunControl(bool start_paused, double real_time_factor) : paused_(start_paused), real_time_factor_(real_time_factor) {}
 
-  /// Ends steps that are under way, and waits until the run stands still: for an exchange, and at most for `patience`.
+  /// Ends pending steps, and waits until the run has stopped: for an exchange, and at most for `patience`.
   Reply Pause(std::chrono::milliseconds patience = std::chrono::seconds(5));
   Reply Resume();
-  /// Lets N exchanges happen and waits until they have, or the run is paused anew, resumed or ended before.
+  /// Runs N exchanges and waits for their end, or until the run is paused again, resumed or ended.
   Reply Step(std::uint64_t exchanges);
-  /// @param factor  as in the constructor; holds from now on, whatever went before
+  /// @param factor  as in the constructor; applies from now on
   Reply SetRealTimeFactor(double factor);
   bool paused() const;
   double real_time_factor() const;
 
-  /// The run's side: waits while paused or ahead of the pace, for 0.1 s at most, so that Ctrl-C stays quick.
+  /// For the run: waits while paused or ahead of the pace, for 0.1 s at most, so that Ctrl-C acts quickly.
   /// @return whether the next exchange, which begins at this simulated time, may happen; Completed() follows then
   bool Admit(double simulated_s);
-  /// The run's side: the exchange has happened, and the time is this now.
+  /// For the run: the exchange is complete, and this is the simulated time.
   void Completed(double simulated_s);
-  /// The run's side: no more exchanges will happen.
+  /// For the run: no more exchanges follow.
   void End();
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Where the wall clock stood at a simulated time: from here the pace is kept.
+  /// The wall time at a simulated time, from which the pace is kept.
   struct PaceMark {
     double simulated_s;
     Clock::time_point wall;
@@ -64,7 +64,7 @@ class RunControl {
   bool is_moving_ = false;       ///< an exchange is under way
   double simulated_s_ = 0.0;     ///< at the end of the last exchange, or the beginning of the one under way
   std::uint64_t completed_ = 0;  ///< exchanges
-  std::uint64_t goal_ = 0;       ///< a paused run goes on until `completed_` is this
+  std::uint64_t goal_ = 0;       ///< a paused run continues until `completed_` is this
   std::uint64_t decisions_ = 0;  ///< calls of Pause and Resume: each ends all steps
   double real_time_factor_;
   std::optional<PaceMark> pace_mark_;  ///< none: the next exchange sets it

@@ -13,8 +13,8 @@ namespace ltd_master {
 ///
 /// A quote begins a quoted text where a value begins (behind '=', ':', ',', '[' or '{'), as in YAML; elsewhere it is an
 /// apostrophe.
-/// @throws std::invalid_argument for a quote or bracket that is not closed, and for a word that is no setting, which is
-///         the second word of a value without quotes
+/// @throws std::invalid_argument for a quote or bracket that is not closed, and for a word that is no setting, such as
+/// the second word of a value without quotes
 std::vector<std::string> SplitSettings(const std::string& text);
 
 }  // namespace ltd_master

@@ -10,13 +10,13 @@ namespace ltd_master {
 /// The train's time for other nodes.
 ///
 ///   clock    always, in the train's namespace: /train/clock, /north/train/clock
-///   /clock   from one train per ROS master, whose nodes all have one /clock: from that in the namespace /train, or as
-///            the parameter ~global_clock says
+///   /clock   from one train per ROS master, whose nodes share one /clock: from the train in the namespace /train, or
+///            as the parameter ~global_clock sets
 ///
-/// Beside each clock stands the parameter `use_sim_time`, which tells nodes to follow it: true as long as the run
-/// lasts; afterwards it is again what it was, so that nodes that come later do not wait for a clock that has stopped.
+/// Beside each clock, the parameter `use_sim_time` makes nodes follow it: true while the run lasts, then restored, so
+/// that nodes started later do not wait for a stopped clock.
 ///
-/// Both topics are latched: who comes in a pause gets the time at which the train stands. ROS takes time 0 for "no time
+/// Both topics are latched: a subscriber that arrives in a pause gets the present time. ROS takes time 0 for "no time
 /// yet", so the clock begins at 1 ns.
 class SimulatedClock {
  public:
@@ -26,14 +26,14 @@ class SimulatedClock {
   SimulatedClock& operator=(const SimulatedClock&) = delete;
   ~SimulatedClock();
 
-  /// At a record: publishes multiples of 10 ms, 100 Hz of simulated time however often records are made.
+  /// At a record: publishes multiples of 10 ms, i.e. 100 Hz of simulated time, whatever the record interval.
   void Show(double simulated_s);
-  /// While the train stands: publishes this time, unless it is the last one.
+  /// During a pause: publishes this time, unless it was published last.
   void Settle(double simulated_s);
   /// Sets use_sim_time, once more after a restart of the ROS master.
   void TellUse() const;
 
-  /// Whether a train in this namespace owns /clock unless told otherwise.
+  /// Whether a train in this namespace owns /clock by default.
   static bool OwnsGlobalClock(const std::string& train_namespace) { return train_namespace == "/train"; }
 
  private:

@@ -21,7 +21,7 @@ constexpr double kHandshake = 1.0;  // [s] for a node that has advertised to acc
 
 using Links = std::vector<std::unique_ptr<ServiceLink>>;  // [rank] null: not connected
 
-/// One call of all ranks: in the memory that some share with the master, through links to the others.
+/// One call of all ranks: through shared memory for ranks that have a slot, through links for the others.
 template <class Service>
 class CallOfAll {
  public:
@@ -69,7 +69,7 @@ class CallOfAll {
       CheckOthers();
     }
     const int last_rank = slots.last_rank();
-    if (last_rank >= 0) outcome_.last_rank = last_rank;  // else a process that was given up came in last
+    if (last_rank >= 0) outcome_.last_rank = last_rank;  // else the last reply came from a process given up
   }
 
   /// @return whether nothing more is to be expected there
@@ -113,7 +113,7 @@ class CallOfAll {
     }
   }
 
-  /// Does something with a rank; who fails in it is lost.
+  /// Executes an action on a rank; the rank is lost if it fails.
   template <class Action>
   void Attempt(int rank, Action action) {
     try {

@@ -89,8 +89,8 @@ class Unpacker {
     }
   }
 
-  /// Of external vehicles: what their node leaves out follows from the coupler heads, or is NaN; the digest covers the
-  /// heads and what the node adds of its own.
+  /// Completes the record of external vehicles: values that their node omits follow from the coupler heads, or are NaN;
+  /// the digest covers the heads and the node's own data.
   /// @param start_m  [vehicle of the train] centre along the track
   void ExternalRecord(const train_brake_msgs::RankRecord& record, const std::vector<double>& start_m,
                       ExchangeReply& reply) const {

@@ -16,7 +16,7 @@
 namespace ltd_master {
 namespace {
 
-constexpr double kSecondsPerReport = 5.0;  // on who has not come up yet
+constexpr double kSecondsPerReport = 5.0;  // on ranks that have not started yet
 constexpr std::chrono::milliseconds kRetry(100);
 constexpr std::chrono::milliseconds kRetryAfterFailure(500);  // of a node that has answered
 constexpr rlim_t kDescriptorsPerRank = 2;
@@ -130,7 +130,7 @@ void RosTransport::Recover(const std::vector<LostRank>& lost, const LateWatch& w
 void RosTransport::BringBack(const LostRank& lost, const std::string& when, const std::function<void()>& catch_up) {
   const Clock::time_point start = Clock::now();
   double next_report_s = kSecondsPerReport;
-  std::string tried;  // why the last node that was tried did not take its place
+  std::string tried;  // why the last node that was tried was rejected
   while (true) {
     std::string why_not;
     try {
@@ -197,7 +197,7 @@ void RosTransport::WaitForRanks() {
   };
   const Clock::time_point start = Clock::now();
   double next_report_s = kSecondsPerReport;
-  // Asking for the first that is missing is enough until they are to be named: it spares the ROS master.
+  // Only the first missing rank is looked up until all of them are to be named, to spare the ROS master.
   for (std::size_t rank = 0; rank < ranks_.size();) {
     const std::string why = why_not(rank);
     if (why.empty()) {

@@ -18,7 +18,7 @@ struct CsvTable {
   std::vector<std::vector<double>> values;  ///< [column][row]
   std::vector<int> row_lines;               ///< [row] the line in the file, for messages
 
-  /// The values of a column, or null after reporting that there is none of this name.
+  /// The values of a column; null, with an error reported, if it does not exist.
   const std::vector<double>* Column(const std::string& name, ErrorList& errors) const;
 };
 
@@ -32,19 +32,18 @@ struct CsvLimits {
 /// Reads a table of numbers.
 ///
 /// The first line names the columns, each name once. Each further line has one finite decimal number per
-/// column. Columns are separated by commas or, where the header has none, by semicolons or tabs. A cell may
-/// stand in double quotes, within which a quote is written twice; a quote ends on its line. A separator at
-/// the end of every line makes no column. Empty lines, and lines that start with '#', are skipped; spaces
-/// around cells do not matter. All that is wrong is added to `errors`; the table is only meant to be used
-/// when there is nothing.
+/// column. Columns are separated by commas or, where the header has none, by semicolons or tabs. A cell may be in
+/// double quotes, within which a quote is written twice; a quoted cell ends on its line. A separator at the end of
+/// every line makes no column. Empty lines, and lines that start with '#', are skipped; spaces around cells do not
+/// matter. All errors are added to `errors`; use the table only if there are none.
 CsvTable ReadCsvTable(const std::string& file, ErrorList& errors);
 
 /// Reads such a table as a list of maps: each row one map, with the names of the columns as keys.
 ///
-/// Cells hold text here as well; one that is empty is not given. A column named `note` is left out. Messages
-/// about a value name its line, those about a key the header's.
+/// Here cells may also hold text; an empty one counts as not given. A column named `note` is ignored. Messages about a
+/// value name its line, those about a key the header's.
 ///
-/// @param document  of which the nodes say that they are
+/// @param document the source that the nodes name in messages
 /// @return null after an error
 NodePtr ReadCsvList(const std::string& file, const std::shared_ptr<const Document>& document, ErrorList& errors);
 

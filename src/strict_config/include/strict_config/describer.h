@@ -11,7 +11,7 @@
 
 #include "strict_config/parameters.h"
 
-/// What the keys of a parameter struct are, told by its Visit list: the source of references and schemas.
+/// The keys of a parameter struct, from its Visit list: the source of references and schemas.
 namespace strict_config {
 
 /// When a key is known, or must be given: another key of the same map has one of these values.
@@ -30,13 +30,13 @@ struct KeyDescription {
   enum class Kind { kNumber, kInteger, kFlag, kText, kChoice, kNumbers, kIntegers, kGroup, kList, kPart, kParts };
 
   std::string key;
-  const void* type = nullptr;  ///< differs where one key stands for different structs with different values of another
+  const void* type = nullptr;  ///< differs if one key has different structs, depending on the value of another key
   Kind kind = Kind::kNumber;
   std::string meaning;
   Range range{};                        ///< of numbers
   std::vector<std::string> choices;     ///< the words of a choice
   std::string default_value;            ///< as YAML; empty: there is none
-  bool may_be_left_out = true;          ///< it has a default, or what is absent means something
+  bool may_be_left_out = true;          ///< it has a default, or its absence has a meaning
   bool is_required_by_default = false;  ///< it must be given where all other keys are left out
   std::string folder;                   ///< of a part: where its files are looked for
   bool may_be_table = false;            ///< it may be a CSV file
@@ -56,7 +56,7 @@ struct KeyDescription {
 /// (kind == ...)`): DescribeKeys visits once for each value of each of these.
 class Describer {
  public:
-  /// A key on whose value the list may depend, and its values but for the one that it has.
+  /// A key on whose value the list may depend, and its possible values, except the present one.
   struct Selector {
     std::string key;
     std::string value;
@@ -148,7 +148,7 @@ class Describer {
   std::vector<Selector> selectors_;
 };
 
-/// What visits with one selector changed at a time have called.
+/// The keys called by visits with one selector changed at a time.
 class KeyCollection {
  public:
   /// @param set  the selector that was changed, and its value; empty: none
@@ -188,7 +188,7 @@ std::vector<KeyDescription> DescribeKeys(const Struct& prototype = Struct()) {
   return collection.Finish();
 }
 
-/// Whether a part of this struct may be a table, as Reader::TableKey tells.
+/// Whether a part of this struct may be a table; see Reader::TableKey.
 template <class Struct, class = void>
 struct MayBeTable : std::false_type {};
 template <class Struct>

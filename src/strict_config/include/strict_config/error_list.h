@@ -20,10 +20,10 @@ struct KeyPath {
   std::size_t part = 0;  ///< where the path within the innermost referenced part begins
 };
 
-/// Everything that is wrong with a configuration, so that a user repairs it in one go.
+/// All errors of a configuration, so that a user can repair them at once.
 ///
-/// Text() lists the errors by file (in the order in which files were first complained about) and line, one
-/// per line: "wagon.yaml:12: contact.friction_coefficient must be > 0, got -0.4".
+/// Text() lists the errors by file (in the order of their first errors) and line, one per line: "wagon.yaml:12:
+/// contact.friction_coefficient must be > 0, got -0.4".
 class ErrorList {
  public:
   /// Adds an error of the user.
@@ -37,18 +37,18 @@ class ErrorList {
   void Add(const std::string& file, int line, const KeyPath& path, const std::string& text);
 
   bool empty() const { return count_ == 0; }
-  /// The number of errors, including those beyond the number that is kept.
+  /// The number of errors, including those that were not kept.
   std::size_t size() const { return count_; }
-  /// The number of calls of Add, with those that repeated an error.
+  /// The number of calls of Add, repeated errors included.
   std::size_t reports() const { return reports_; }
-  /// Whether there are so many that further ones are only counted.
+  /// Whether the list is full: further errors are only counted.
   bool full() const { return errors_.size() >= kKept; }
 
-  /// Whether what a path leads to is wrong: an error was reported at the path, below it, or above it where `is_read`
-  /// says that the map there was not read. "[]" in the path stands for every index: "consist[].count".
+  /// Whether an error concerns a path: it was reported at the path, below it, or above it where `is_read` says that the
+  /// map there was not read. "[]" in the path stands for every index: "consist[].count".
   bool Concerns(const std::string& path, const std::function<bool(const std::string&)>& is_read) const;
 
-  /// The first `shown` errors, one per line, and how many there are beyond.
+  /// The first `shown` errors, one per line, and the number of further ones.
   std::string Text(std::size_t shown = 50) const;
 
  private:

@@ -17,7 +17,7 @@ struct Override {
 };
 
 /// The values that replace what the files say, matched by path as the reader descends, after references are
-/// resolved. Of several for one path the last one counts.
+/// resolved. Of several for one path the last one applies.
 class Overrides {
  public:
   /// @param arguments    "path=value", the value a YAML scalar or a list or map in flow style
@@ -28,9 +28,9 @@ class Overrides {
 
   /// The value given for exactly this path, or null. Marks it as used.
   NodePtr Take(const std::string& path);
-  /// Those, not yet used, that go on below this path, by key or index.
+  /// The unused ones below this path, by key or index.
   std::vector<Override*> Below(const std::string& path);
-  /// Those that nothing has used.
+  /// The overrides that have not been used.
   std::vector<const Override*> Unused() const;
 
  private:

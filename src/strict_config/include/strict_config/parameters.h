@@ -27,11 +27,10 @@
 ///   Group(key, Struct&)       a nested map      List(key, std::vector<Struct>&)  a list of maps
 ///   Part(key, Struct&, kind)  a nested map that may also be a name or a file in the folder `kind`
 ///   Parts(key, std::vector<Struct>&, kind)      a list of them
-///   Check(bool ok, key, rule) a rule between fields; only judged when the fields themselves are right
-///   Check(bool ok, key, rule, {"other_key", ...})   the same; judged when `key` and these keys are right,
-///                             whatever else is wrong. Numbers among them are shown where the rule names
-///                             them.
-/// The key of a Check may lead further down: "commands[1].reduction_kpa".
+///   Check(bool ok, key, rule) a rule between fields; only checked if all fields are valid
+///   Check(bool ok, key, rule, {"other_key", ...})   the same; checked if `key` and these keys are valid, whatever
+///                             other errors there are. Their numbers are shown where the rule names them.
+/// The key of a Check may be a path further down: "commands[1].reduction_kpa".
 ///
 /// Number, Group and Part also take a std::optional, which stays as it is when the key is absent.
 ///
@@ -65,7 +64,7 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), t
 inline constexpr Range kNonNegative{0.0, std::numeric_limits<double>::infinity(), false, true};
 inline constexpr Range kFraction{0.0, 1.0, false, false};
 
-/// What a Choice chooses from: each word that may be written and the value that it stands for.
+/// The options of a Choice: each word that may be written, and its value.
 template <class Enum>
 using Choices = std::initializer_list<std::pair<const char*, Enum>>;
 

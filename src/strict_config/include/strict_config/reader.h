@@ -26,7 +26,7 @@ namespace strict_config {
 struct LoadOptions {
   /// Folders in which parts are looked for after the file's own folder and its ancestors.
   std::vector<std::filesystem::path> search_roots;
-  /// What can be done where there is no folder to look in; see PartLibrary.
+  /// What the user can do if there is no folder to search; see PartLibrary.
   std::string search_remedy;
   /// Values that replace those of the files: "train.coupler.slack_m=0.01".
   std::vector<std::string> overrides;
@@ -35,16 +35,16 @@ struct LoadOptions {
   /// The folder in which a `base: NAME` of the file itself is looked for; empty: the folder that the file is
   /// in.
   std::string kind;
-  /// The sizes that a number can have in reality, by the path of its key, beyond what its range allows: the reader of a
-  /// file asks whether the unit is right. Zero is not judged. Empty: all are.
+  /// The sizes that a number can have in reality, by the path of its key, beyond what its range allows: beyond them the
+  /// reader of a file asks whether the unit is right. Zero is not judged. Empty: any size is accepted.
   std::function<Range(const std::string& path)> plausible_size;
 };
 
-/// What all readers of one configuration share.
+/// The state that all readers of one configuration share.
 struct ReadSession {
-  /// A configuration may not unfold, through its references, to more values than this.
+  /// The largest number of values of a configuration, references expanded.
   static constexpr std::size_t kMaxValues = 3000000;
-  /// Nor may a list of maps or parts be longer than this.
+  /// The largest length of a list of maps or parts.
   static constexpr std::size_t kMaxItems = 200000;
 
   ErrorList& errors;
@@ -61,7 +61,7 @@ struct ReadSession {
   std::map<std::string, ReadMap> read = {};                                ///< by path
   std::function<Range(const std::string& path)> plausible_size = nullptr;  ///< see LoadOptions
 
-  /// Where a value of the configuration stands.
+  /// A place in the configuration, with its value.
   struct Spot {
     Source source;
     NodePtr value;  ///< null: not given
@@ -82,16 +82,16 @@ class Reader {
   void Integers(const char* key, std::vector<int>& values, const Range& range, const char* /*meaning*/);
   void Check(bool ok, const std::string& key, const std::string& rule, const Keys& reads = {});
 
-  /// The folder from which a file that was given under this key counts: that of the file in which it is
-  /// written, or the working directory for an override. Empty if the key was not given.
+  /// The folder to which a path given under this key is relative: that of the file in which it is written, or the
+  /// working directory for an override. Empty if the key was not given.
   std::filesystem::path FolderOf(const std::string& key);
 
-  /// "file:line" of the value at a path of the configuration, or of the map that it is missing in.
+  /// "file:line" of the value at a path of the configuration, or of the map that lacks it.
   std::string PlaceOf(const std::string& path) const;
 
   /// All files of the configuration that were read so far.
   std::vector<std::filesystem::path> Files() const { return session_.library.Files(); }
-  /// Names that stand for different files; see PartLibrary.
+  /// Names that have several different files; see PartLibrary.
   const std::set<std::string>& Ambiguities() const { return session_.library.Ambiguities(); }
 
   template <class Enum>
@@ -120,7 +120,7 @@ class Reader {
   void Part(const char* key, Struct& value, const char* kind, const char* /*meaning*/) {
     const Place place = FindPart(key, kind, TableKey<Struct>(0));
     if (place.state == Place::State::kAbsent) {
-      // One error for a part that has to be given says more than one for each of its fields.
+      // One error for a missing part is clearer than one for each of its fields.
       if (!IsComplete(place, value)) ReportMissingPart(key, kind);
     } else {
       ReadStruct(place, value);
@@ -151,9 +151,9 @@ class Reader {
     enum class State { kMap, kAbsent, kNull, kBad };
     State state = State::kBad;
     NodePtr map;    ///< null: an empty map
-    Source source;  ///< what a complaint about something missing in it points to
+    Source source;  ///< where an error about a missing key of it points
     KeyPath path;
-    FileChain chain;  ///< the files entered on the way here
+    FileChain chain;  ///< the files that led here
   };
   enum class Absent { kReadAsEmpty, kSkip };
 
@@ -167,7 +167,7 @@ class Reader {
 
   Reader(ReadSession& session, const Place& place);
 
-  /// Under which key a part that is a table has its rows; null: it may not be one.
+  /// The key under which a part given as a table has its rows; null: it may not be a table.
   template <class Struct>
   static auto TableKey(int /*preferred*/) -> decltype(Struct::kTableKey) {
     return Struct::kTableKey;
@@ -227,7 +227,7 @@ class Reader {
   void ReportNull(const Place& place);
   bool Afford(const Place& place);
 
-  /// Whether a struct can do without being given: its fields all have defaults.
+  /// Whether a struct may be left out: all its fields have defaults.
   template <class Struct>
   bool IsComplete(const Place& place, Struct value) {
     ErrorList missing;
@@ -241,9 +241,9 @@ class Reader {
 
   ReadSession& session_;
   const Place place_;
-  std::vector<std::string> known_;  ///< the keys that were asked for
+  std::vector<std::string> known_;  ///< the keys that were requested
 
-  /// What a rule may have to show of a number.
+  /// A number as a rule may show it.
   struct Shown {
     double value;
     bool is_default;
@@ -257,15 +257,15 @@ class Reader {
     std::string text;
     std::vector<std::string> read;  ///< paths of what it reads
   };
-  std::vector<BrokenRule> broken_rules_;  ///< Checks that failed; void if what they read is wrong
+  std::vector<BrokenRule> broken_rules_;  ///< Checks that failed; ignored if a value that they read is invalid
 };
 
 /// Reads a struct from a YAML file and the files that it refers to, with overrides on top.
 ///
-/// All that is wrong is added to `errors`; the result is only meant to be used when there is nothing.
+/// All errors are added to `errors`; use the result only if there are none.
 ///
-/// @param rules  called as rules(Struct&, Reader&) when all else is right, for what takes a calculation to
-///               judge: it calls Check of the reader, with paths from the root of the configuration
+/// @param rules  called as rules(Struct&, Reader&) if there are no other errors, for rules that need a calculation: it
+/// calls the reader's Check with paths from the root of the configuration
 template <class Struct, class Rules>
 Struct Load(const std::string& file, const LoadOptions& options, ErrorList& errors, const Rules& rules) {
   Struct value;
@@ -290,7 +290,7 @@ Struct Load(const std::string& file, const LoadOptions& options, ErrorList& erro
   return Load<Struct>(file, options, errors, [](Struct&, Reader&) {});
 }
 
-/// Reads a struct from YAML text that stands alone, such as Write gives: parts are maps, not names or files.
+/// Reads a struct from self-contained YAML text, such as Write makes: parts are maps, not names or files.
 ///
 /// @param label   what messages name instead of a file
 /// @param errors  as above

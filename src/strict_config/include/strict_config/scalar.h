@@ -6,8 +6,8 @@
 namespace strict_config {
 
 /// Reads a finite decimal number: an optional sign, digits with an optional decimal point, an optional
-/// exponent (-3, 0.5, .5, 2., 1e8, 1.5e+6). Nothing else is one: no nan, inf, hexadecimal or octal number (so
-/// no leading zero either), no separators, no spaces, no unit. Independent of the locale.
+/// exponent (-3, 0.5, .5, 2., 1e8, 1.5e+6). Nothing else is accepted: no nan, inf, hexadecimal or octal number (so no
+/// leading zero either), no separators, no spaces, no unit. Independent of the locale.
 std::optional<double> ParseNumber(const std::string& text);
 
 /// The rule that `text` breaks by not being such a number, in words that show how to repair it.

@@ -13,8 +13,8 @@ namespace strict_config {
 /// "frction" is near "friction_coefficient".
 std::string Nearest(const std::string& written, const std::vector<std::string>& known);
 
-/// What follows "is not a known key": how to repair it, as "; did you mean ...?", "; the key is ..., in km/h"
-/// where only the unit differs, or else the known keys.
+/// The continuation of "is not a known key" with a remedy: "; did you mean ...?", "; the key is ..., in km/h" where
+/// only the unit differs, or else the known keys.
 /// @param noun        what the words are: "key", "column"
 /// @param max_listed  the number of known words beyond which the list is cut
 std::string KeyHint(const std::string& written, const std::vector<std::string>& known, const std::string& noun = "key",

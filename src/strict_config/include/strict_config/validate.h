@@ -9,8 +9,7 @@
 
 namespace strict_config {
 
-/// The visitor behind Validate(): holds each field against its range and collects what is wrong, in visit
-/// order.
+/// The visitor behind Validate(): checks each field against its range and collects the errors, in visit order.
 class Validator {
  public:
   void Number(const char* key, double value, const Range& range, const char* /*meaning*/);

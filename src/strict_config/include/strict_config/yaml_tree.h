@@ -18,7 +18,7 @@ struct Document {
   std::filesystem::path folder;       ///< files that it refers to are relative to this
   std::filesystem::path search_from;  ///< names that it refers to are looked for from here upwards
   bool has_lines = true;              ///< false: messages name no line
-  bool stands_alone = false;          ///< it may not refer to any file or name
+  bool stands_alone = false;          ///< it may not refer to files or names
 };
 
 /// A place in a document.

@@ -1,4 +1,4 @@
-"""What a run of the train has left, as arrays.
+"""The results of a run as arrays.
 
     import train_brake
 
@@ -10,7 +10,7 @@
     state.to_pandas()                                 # needs python3-pandas
     run.config, run.summary, run.couplers, run.events # of the same run, where its folder has them
 
-Nothing is read before it is asked for. Arrays that are indexed by vehicle have vehicle 1, the front of the train, at [.., 0].
+Data is read on first access. In arrays indexed by vehicle, vehicle 1 (the front of the train) is at [.., 0].
 """
 
 from train_brake.bag import BagError, BagFile, Damage, Table

@@ -1,8 +1,8 @@
 """Reads the topics of a bag into tables: a row per message, a column per field.
 
-The bytes of all messages of a topic are joined and seen as one numpy array, in the layout of the installed message, where
-all of them have the same length: a record of 242 vehicles costs some microseconds. Other messages are deserialised one by
-one (of the paper's train: 1 to 3 s for 7000 records).
+The bytes of all messages of a topic are joined and seen as one numpy array, in the layout of the installed message,
+where all of them have the same length: a record of 242 vehicles costs some microseconds. Other messages are
+deserialised one by one (of the paper's train: 1 to 3 s for 7000 records).
 """
 
 import contextlib
@@ -54,7 +54,7 @@ class BagError(Exception):
 
 
 class Damage(BagError):
-    """Bytes that are no bag, or not all of one."""
+    """The bytes are not a bag, or only a part of one."""
 
 
 def unit_of(field: str) -> str:
@@ -63,7 +63,7 @@ def unit_of(field: str) -> str:
 
 
 def _comments(definition: str) -> Dict[str, str]:
-    """Of each field in the text of a message: what stands behind it, with the lines that go on."""
+    """The comment of each field in the text of a message, continuation lines included."""
     found: Dict[str, str] = {}
     field = None
     for line in definition.split("=" * 80)[0].splitlines():
@@ -82,8 +82,8 @@ def _comments(definition: str) -> Dict[str, str]:
 class Table:
     """The messages of one topic.
 
-    table["speed_mps"]: a row per message, then what the field's shape is; table.time_s: the simulated times [s] (those of
-    reception for messages without a header).
+    table["speed_mps"]: a row per message, further dimensions as the field has; table.time_s: the simulated times [s]
+    (those of reception for messages without a header).
     """
 
     def __init__(self, columns: Dict[str, numpy.ndarray], time_s: numpy.ndarray, definition: str = ""):
@@ -113,7 +113,7 @@ class Table:
         return list(self._columns)
 
     def unit(self, field: str) -> str:
-        """Of a field; empty for numbers without a unit."""
+        """Unit of a field; empty for numbers without a unit."""
         self[field]  # pylint: disable=pointless-statement
         return unit_of(field)
 
@@ -129,8 +129,8 @@ class Table:
         )
 
     def flat(self) -> Iterator[Tuple[str, numpy.ndarray]]:
-        """Columns of single numbers (or texts): (name, [records]). Elements of arrays are numbered from 1: speed_mps_1 is the
-        first vehicle's. Arrays that are not equally long in all messages are left out."""
+        """Columns of single numbers (or texts): (name, [records]). Elements of arrays are numbered from 1: speed_mps_1
+        is the first vehicle's. Arrays that are not equally long in all messages are left out."""
         for name, column in self._columns.items():
             if column.ndim == 1 and column.dtype != object:
                 yield name, column
@@ -164,8 +164,8 @@ def message_class(kind: str) -> Optional[type]:
 
 
 def _must_be_installed(topic: str, kind: str, md5sum: str, definition: str, _header) -> bool:
-    """A filter of connections for rosbag, which makes a Python module of the definition in the bag and imports it: whoever
-    wrote the bag could have any program run. So nothing is read but what is defined as in the installed messages."""
+    """A filter of connections for rosbag, which turns the definition in the bag into a Python module and imports it: a
+    forged bag could execute any code. So only messages with the installed definitions are read."""
     message = message_class(kind)
     # pylint: disable=protected-access
     if message is None or md5sum != message._md5sum or _words(definition) != _words(message._full_text):
@@ -178,7 +178,7 @@ def _must_be_installed(topic: str, kind: str, md5sum: str, definition: str, _hea
 
 @contextlib.contextmanager
 def _damage_named() -> Iterator[None]:
-    """What goes wrong in rosbag and genpy becomes a BagError. Only calls into them belong here."""
+    """Turns errors of rosbag and genpy into a BagError. Only for calls into these."""
     try:
         yield
     except BagError:
@@ -209,8 +209,8 @@ def is_being_written(folder: pathlib.Path) -> bool:
 
 
 def _layout(message: genpy.Message) -> Optional[numpy.dtype]:
-    """Of the serialised bytes of messages whose texts and arrays are as long as those of this one; None if a field is neither
-    a number nor an array of numbers."""
+    """Of the serialised bytes of messages whose texts and arrays are as long as those of this one; None if a field is
+    neither a number nor an array of numbers."""
     fields: List[tuple] = []
     for name, kind in zip(message.__slots__, message._slot_types):  # pylint: disable=protected-access
         if kind == "std_msgs/Header":
@@ -279,13 +279,16 @@ class BagFile:
 
     def _remedy(self) -> str:
         if is_being_written(self.path.parent):
-            return "A run is writing it now: wait for its end, or stop the run (Ctrl-C); a bag that is written to must not be reindexed"
+            return (
+                "A run is writing it now: wait for its end, or stop the run (Ctrl-C); a bag that is written to must "
+                "not be reindexed"
+            )
         once = "Once no recorder is writing it any more, " if self.path.suffix == ".active" else ""
         return f"{once}`rosbag reindex {self.path}` keeps what can be read; then call again"
 
     @property
     def topics(self) -> Dict[str, Topic]:
-        """Those that have messages."""
+        """The topics that have messages."""
         with self._named(), _damage_named():
             infos = self._bag.get_type_and_topic_info().topics
         return {name: Topic(info.msg_type, info.message_count) for name, info in infos.items() if info.message_count}
@@ -314,7 +317,7 @@ class BagFile:
         return [self._deserialised(topic, data) for data, _ in self._raw([topic])[topic]]
 
     def tables(self, topics: Sequence[str]) -> Dict[str, Table]:
-        """Of these topics, in one passage through the bag.
+        """Reads these topics in one pass through the bag.
         @raises BagError  if a topic holds more than one train or run, or the bag is damaged"""
         raw = self._raw(topics)
         with self._named():

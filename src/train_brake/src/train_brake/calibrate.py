@@ -2,8 +2,8 @@
 
     minimise  sum_i ((r_i(p) - v_i) / t_i)^2   over   lowest_k <= p_k <= highest_k
 
-r_i: result of run i as in its summary, v_i: its target, t_i: its tolerance, the difference that is worth as much as one
-tolerance of any other target. By scipy.optimize.least_squares (trust region reflective; derivatives by differences)."""
+r_i: result of run i as in its summary, v_i: its target, t_i: its tolerance, by which the differences of all targets are
+weighted. By scipy.optimize.least_squares (trust region reflective; derivatives by differences)."""
 
 import argparse
 import concurrent.futures
@@ -21,7 +21,8 @@ import yaml
 
 from train_brake.study import TRAIN_SIM, Change, StudyError, flat, number
 
-DESCRIPTION = """Fits a few values of a configuration so that runs meet targets, by least squares (scipy.optimize.least_squares).
+DESCRIPTION = """Fits a few values of a configuration so that runs meet targets, by least squares
+(scipy.optimize.least_squares).
 
 FILE.yaml:
   parameters:                                       # of all runs
@@ -31,11 +32,11 @@ FILE.yaml:
   fixed: [model=ltd]                                # changes of all runs; optional
 
 Scenarios are looked for beside FILE.yaml, then as names in the folders of TRAIN_BRAKE_CONFIG (scenarios/NAME.yaml)."""
-EPILOG = """A result is named as in results.csv of a sweep: final_speed_kmh.mean, stop_distance_m, max_tension_n.value. A path may be
-several, joined by +, which get the same value.
+EPILOG = """A result is named as in results.csv of a sweep: final_speed_kmh.mean, stop_distance_m,
+max_tension_n.value. A path may be several, joined by +, which get the same value.
 
-Exit codes: 0 all targets are met within their tolerances; 1 they are not, or something could not be written; 2 wrong arguments or
-configuration; 3 a run broke down; 130 interrupted."""
+Exit codes: 0 all targets are met within their tolerances; 1 they are not, or something could not be written; 2 wrong
+arguments or configuration; 3 a run broke down; 130 interrupted."""
 STEP = 1e-4  # of a derivative, in shares of the range: large beside the noise of ten digits, small beside the curvature
 
 
@@ -99,7 +100,7 @@ def _scenario(name: str, beside: pathlib.Path) -> Optional[pathlib.Path]:
 
 
 def read(file: pathlib.Path) -> Tuple[List[Parameter], List[Target], List[str]]:
-    """@raises StudyError  with all that is wrong"""
+    """@raises StudyError naming all errors"""
     try:
         given = yaml.safe_load(file.read_text())
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
@@ -241,7 +242,8 @@ def fit(runs: Runs, report=lambda values, results: None) -> Tuple[numpy.ndarray,
     for target, row in zip(runs.targets, best.jac):
         if not row.any():
             print(
-                f"calibrate: {target.scenario.stem}: {target.result} does not depend on the parameters here; start elsewhere",
+                f"calibrate: {target.scenario.stem}: {target.result} does not depend on the parameters here; start "
+                f"elsewhere",
                 file=sys.stderr,
             )
     return low + span * best.x, results([best.x])[0]
@@ -266,7 +268,8 @@ def _calibrate(options: argparse.Namespace, train_sim) -> int:
     def report(values, results):
         off = max(abs((r - t.value) / t.tolerance) for r, t in zip(results, targets))
         print(
-            f"calibrate: {runs.done} runs, {', '.join(f'{v:.6g}' for v in values)}: largest difference {off:.3g} tolerances",
+            f"calibrate: {runs.done} runs, {', '.join(f'{v:.6g}' for v in values)}: largest difference {off:.3g} "
+            f"tolerances",
             file=sys.stderr,
         )
 
@@ -277,8 +280,8 @@ def _calibrate(options: argparse.Namespace, train_sim) -> int:
         within = abs(result - target.value) <= target.tolerance
         met = met and within
         print(
-            f"{target.scenario.stem} {' '.join(target.changes)} {target.result}: {result:.7g}, target {target.value:g} +- {target.tolerance:g}"
-            + ("" if within else "  MISSED")
+            f"{target.scenario.stem} {' '.join(target.changes)} {target.result}: {result:.7g}, target {target.value:g} "
+            f"+- {target.tolerance:g}" + ("" if within else "  MISSED")
         )
     for parameter, value in zip(parameters, values):
         span = parameter.highest - parameter.lowest

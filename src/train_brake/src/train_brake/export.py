@@ -16,9 +16,10 @@ from train_brake.run import Run, load
 DESCRIPTION = """Writes what a run has recorded as CSV tables, one per topic, or as one HDF5 file.
 
 RUN is the folder of a run or a bag, whether train_sim, ltd_master or `rosbag record` wrote it."""
-EPILOG = """CSV: the columns are time_s and the fields; elements of arrays are numbered from 1 (speed_mps_1: the first vehicle).
-HDF5: a group per topic, a dataset per field with the attributes unit and meaning; the configuration, the summary and the
-events as JSON in the attributes of the file.
+EPILOG = """CSV: the columns are time_s and the fields; elements of arrays are numbered from 1 (speed_mps_1: the first
+vehicle).
+HDF5: a group per topic, a dataset per field with the attributes unit and meaning; the configuration, the summary and
+the events as JSON in the attributes of the file.
 
 Exit codes: 0 done; 1 the run cannot be read, or the tables cannot be written; 2 wrong arguments."""
 

@@ -1,5 +1,5 @@
-"""`rosrun train_brake run`: launches a train as a ROS graph and ends with the run's own exit code, which roslaunch keeps
-to itself."""
+"""`rosrun train_brake run`: launches a train as a ROS graph and ends with the run's own exit code, which roslaunch does
+not return."""
 
 import contextlib
 import difflib
@@ -20,8 +20,9 @@ USAGE = """usage: rosrun train_brake run SCENARIO [OUT] [ARG:=VALUE ...]
        rosrun train_brake run [OUT] resume:=FOLDER [ARG:=VALUE ...]
 
 Launches the train of a scenario file as a ROS graph. The number of its vehicles is found in the file. With a folder
-OUT results are written there, and a report on the run, OUT/report.html (report:=false: none). ARG is an argument of train.launch
-(roslaunch --ros-args train_brake train.launch lists them). Relative paths are those of the caller's folder.
+OUT results are written there, and a report on the run, OUT/report.html (report:=false: none). ARG is an argument of
+train.launch (roslaunch --ros-args train_brake train.launch lists them). Relative paths are those of the caller's
+folder.
 
 Exit codes are those of the train's master (train_sim --help lists them; 4: a wagon node is missing, dead or late).
 Code 1 also stands for a master that was killed or was not started."""
@@ -56,7 +57,8 @@ def parse(words):
 
 
 def scenario_of(file):
-    """Checks a scenario file; errors go to the terminal. @return what `train_sim check --json` tells; None: it cannot be used"""
+    """Checks a scenario file; errors go to the terminal. @return the output of `train_sim check --json`; None: the
+    scenario cannot be used"""
     check = subprocess.run(
         ["rosrun", "train_sim", "train_sim", "check", "--json", file], stdout=subprocess.PIPE, text=True, check=False
     )
@@ -64,8 +66,9 @@ def scenario_of(file):
 
 
 def call_nodes_by_a_name_that_is_known(arguments):
-    """ROS lets nodes call each other by their machine's name. A bare machine or a container may not know its own: then a run
-    on that machine alone goes by localhost, and the user is told. ROS_HOSTNAME and ROS_IP, where set, stay as they are.
+    """ROS lets nodes call each other by their machine's name. A bare machine or a container may not know its own: then
+    a run on that machine alone uses localhost, and the user is informed. ROS_HOSTNAME and ROS_IP, where set, stay as
+    they are.
     """
     uri = urllib.parse.urlsplit(os.environ.get("ROS_MASTER_URI", "http://localhost:11311"))
     is_alone = not arguments.get("machines") and uri.hostname in ("localhost", "127.0.0.1", socket.gethostname())
@@ -75,7 +78,10 @@ def call_nodes_by_a_name_that_is_known(arguments):
         socket.getaddrinfo(socket.gethostname(), None)
     except OSError:
         os.environ["ROS_HOSTNAME"] = "localhost"
-        text = f"this machine's name, {socket.gethostname()}, leads nowhere: nodes use localhost (ROS_HOSTNAME=... for another)"
+        text = (
+            f"this machine's name, {socket.gethostname()}, leads nowhere: nodes use localhost "
+            "(ROS_HOSTNAME=... for another)"
+        )
         print(presentable(f"run: {text}"), file=sys.stderr)
 
 
@@ -123,8 +129,8 @@ def launch(arguments, watched):
 
 @contextlib.contextmanager
 def outlived_output():
-    """What reads the output may go away, or its disk be full: roslaunch would end with it, and the run. A terminal gets the
-    output as it comes; anything else gets it from a process that goes on reading."""
+    """The reader of the output may end, or its disk may be full, which would end roslaunch and the run. A terminal gets
+    the output directly; any other reader gets it from a process that never stops reading."""
     shields = []
     for descriptor in (1, 2):
         try:
@@ -158,7 +164,7 @@ def outlived_output():
 
 
 def in_short(out):
-    """What a person wants to know of a run first, as text; empty if that cannot be told."""
+    """The main results of a run as text; empty if they are not known."""
     command = ["rosrun", "train_sim", "train_sim", "summary", out]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False).stdout
 
@@ -186,8 +192,7 @@ def run(words):
     if told is None:
         return 2
     arguments.setdefault("vehicles", told["vehicles"])
-    # The launch file takes 2d, and one wagon node per core, where it is told nothing: a train without 2D vehicles needs
-    # none.
+    # The launch file's defaults are 2d and one wagon node per core: a train without 2D vehicles needs none.
     if "model" not in arguments:
         arguments["model"] = told["default_model"]
         arguments.setdefault("on_nodes", str("2d" in told["model"].split(", ")).lower())
@@ -210,7 +215,7 @@ def run(words):
             return 2
         code = int(status.read_text()) if status.exists() else None
 
-    # Code 2: nothing was written. What is in the folder is of an earlier run, if there is anything.
+    # Code 2: nothing was written. Files in the folder are those of an earlier run.
     if wants_report and out and code not in (None, 2) and os.path.exists(f"{out}/train.bag"):
         if subprocess.run(["rosrun", "train_brake", "report", out], check=False).returncode:
             print(f"The report on the run could not be made. The run itself ended with code {code}.", file=sys.stderr)

@@ -93,7 +93,7 @@ def is_scenario(topic: str, found: Topic) -> bool:
 
 
 class Run:
-    """One run. run[topic] is read when it is asked for first; names are those of the bag without the train's namespace:
+    """One run. run[topic] is read on first access; names are those of the bag without the train's namespace:
     "state", "in_train_forces", "brake_pressures", "energy_ledger", "wagon_100/state"."""
 
     def __init__(self, given: Union[str, pathlib.Path]):
@@ -138,7 +138,7 @@ class Run:
         return self._tables[topic]
 
     def read(self, topics: Sequence[str]) -> None:
-        """Reads several topics in one passage through the bag. @raises KeyError, BagError"""
+        """Reads several topics in one pass through the bag. @raises KeyError, BagError"""
         unknown = [topic for topic in topics if topic not in self._topics]
         if unknown:
             raise KeyError(f"{', '.join(unknown)}: {self.bag} has {', '.join(self.topics)}")
@@ -167,8 +167,8 @@ class Run:
 
     @functools.cached_property
     def couplers(self) -> Optional[Dict[str, numpy.ndarray]]:
-        """couplers.csv: of each connection the largest forces [N] of all exchanges, and their times [s]; None if there is
-        none."""
+        """couplers.csv: of each connection the largest forces [N] of all exchanges, and their times [s]; None if there
+        is none."""
         source = self._beside("couplers.csv")
         return read_couplers(source) if self.bag.name in BAGS and source.exists() else None
 
@@ -208,7 +208,7 @@ class Run:
 def load(given: Union[str, pathlib.Path], topics: Sequence[str] = ()) -> Run:
     """A run from its folder or from a bag, recorded by a run or by rosbag.
 
-    @param topics  are read at once; the others when they are asked for
+    @param topics are read at once; the others on first access
     @raises BagError  if it cannot be read; KeyError if it has no such topic
     """
     run = Run(given)

@@ -1,4 +1,4 @@
-"""Whether a file beside a bag is what its name says: another program's summary.json or config.yaml is told, not tripped over."""
+"""Checks the files beside a bag: a summary.json or config.yaml of another program is reported as an error."""
 
 import pathlib
 from typing import Any, List, NamedTuple
@@ -9,7 +9,7 @@ NUMBER = (int, float)
 
 
 class Maybe(NamedTuple):
-    """May be null, or not be there."""
+    """May be null or missing."""
 
     kind: Any
 
@@ -69,7 +69,7 @@ def _complaints(value: Any, kind: Any, path: str) -> List[str]:
 
 
 def checked(content: dict, kind: dict, source: pathlib.Path, what: str) -> dict:
-    """@raises BagError  with the first of what does not fit"""
+    """@raises BagError with the first mismatch"""
     complaints = _complaints(content, kind, "")
     if complaints:
         more = f" (and {len(complaints) - 1} more)" if len(complaints) > 1 else ""

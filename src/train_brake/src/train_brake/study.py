@@ -12,12 +12,12 @@ import numpy
 
 # The program itself where it is on PATH: rosrun takes longer to find it than a short run does.
 TRAIN_SIM = ("train_sim",) if shutil.which("train_sim") else ("rosrun", "train_sim", "train_sim")
-# Of a summary: what says something of the machine, not of the train.
+# Values of a summary that describe the machine, not the train.
 NO_RESULT = ("wall_s", "real_time_factor", "ns_per_vehicle_step", "dt_s", "exchange_interval_s", "resumed_at_s")
 
 
 class StudyError(Exception):
-    """What a user gave cannot be used. The text says where, what, and the remedy."""
+    """An error in the user's input. The text says where, what, and the remedy."""
 
 
 class Change(NamedTuple):

@@ -39,19 +39,20 @@ from train_brake.study import (
     resolve,
 )
 
-DESCRIPTION = """Runs a scenario with many values of its keys, side by side on all cores, and makes one table and one page of the results.
+DESCRIPTION = """Runs a scenario with many values of its keys, side by side on all cores, and makes one table and one
+page of the results.
 
-Without a SCENARIO, the study in the folder OUT goes on where it was ended, or collects what other machines have run."""
-EPILOG = """What changes: every row of --list, with every point of all --grid, with every draw of --random. Draws are the same at every
-point, so that points differ by what the grid says and not by chance.
+Without a SCENARIO, the study in the folder OUT is continued, or the results of other machines are collected."""
+EPILOG = """What changes: every row of --list, with every point of all --grid, with every draw of --random. Draws are
+the same at every point, so that points differ by their values and not by chance.
 
   rosrun train_brake sweep my.yaml study --grid initial_speed_kmh=40:80:5 --grid 'commands[0].reduction_kpa=50,100,170'
   rosrun train_brake sweep my.yaml study --random 'initial_speed_kmh=uniform(79.9,80.1)' --draws 36 --seed 1
   rosrun train_brake sweep my.yaml study --list cases.csv       # a line of paths, then a line of values per run
   rosrun train_brake sweep study                                # goes on
 
-Exit codes: 0 done; 1 something could not be written; 2 wrong arguments or configuration, nothing was run; 3 some runs broke
-down, the table says which; 130 interrupted: what is done is kept."""
+Exit codes: 0 done; 1 something could not be written; 2 wrong arguments or configuration, nothing was run; 3 some runs
+broke down, the table says which; 130 interrupted: what is done is kept."""
 PERCENTILES = (5, 50, 95)
 DONE = (0, 3)  # exit codes that are results
 
@@ -149,7 +150,7 @@ class Study:
 
     @staticmethod
     def create(options: argparse.Namespace, train_sim=TRAIN_SIM) -> "Study":
-        """Checks all runs, then writes the plan. The same study in the folder goes on; another one is refused."""
+        """Checks all runs, then writes the plan. The same study in the folder is continued; another one is refused."""
         fixed = [change_of(text) for text in options.changes]
         if options.model:
             fixed.append(Change("model", options.model))
@@ -236,7 +237,7 @@ class Study:
                 with lock:
                     if ends.is_set():
                         return None
-                    # In a group of its own: Ctrl-C ends it when this program says so.
+                    # In a process group of its own: on Ctrl-C, this program ends it.
                     process = subprocess.Popen(
                         [*train_sim, "run", "config.yaml", "--json", "--threads", "1", *keep],
                         cwd=run,
@@ -272,7 +273,7 @@ class Study:
             raise OSError("\n".join(failures))
 
     def results(self) -> List[Dict[str, Any]]:
-        """Of each run that is done: its row of the plan, and the numbers of its summary."""
+        """For each run that is done: its row of the plan, and the numbers of its summary."""
         found = ((row, self.summary(row)) for row in self.plan)
         return [{**row, **flat(summary)} for row, summary in found if summary is not None]
 
@@ -296,7 +297,8 @@ def is_number(value: Any) -> bool:
 
 
 def percentiles(study: Study, rows: List[Dict[str, Any]]) -> List[Dict[str, Any]]:
-    """Of each point of the grid, over the draws at it: runs, mean, standard deviation, extremes, percentiles of each result."""
+    """For each point of the grid, over its draws: number of runs, mean, standard deviation, extremes, percentiles of
+    each result."""
     drawn = {change_of(text).path for text in study.asked["random"]}
     kept = [path for path in study.paths if path not in drawn]
     points: Dict[tuple, List[Dict[str, Any]]] = {}

@@ -1,4 +1,4 @@
-"""`rosrun train_brake vehicle_test`: judges a node that moves external vehicles, as their train's master would call it."""
+"""`rosrun train_brake vehicle_test`: tests a node that moves external vehicles, with the calls of a train's master."""
 
 import contextlib
 import json
@@ -13,22 +13,22 @@ import time
 
 USAGE = """usage: rosrun train_brake vehicle_test SCENARIO [NODE] [ns:=/train] [deadline_s:=1] [seconds:=10]
 
-Judges the node that moves the external vehicles of a scenario's train, which must be running; NODE where there are several.
-It is called as the train's master would call it, on a level track:
+Tests the node that moves the external vehicles of a scenario's train; it must be running. NODE selects one of several.
+It is called as by the train's master, on a level track:
 
   protocol       it starts with the declared speed, refuses another version, and exchanges that are not the next one
-  refusal        it refuses loads that are not finite, and goes on as if they had not come
+  refusal        it refuses loads that are not finite, and continues unaffected
   repeat         the last exchange is answered again, and nothing moves
   repeatability  the same loads give the same bits
   finite         every reply is
   velocity       it is the derivative of the displacement: |x1 - x0 - H (v0 + v1) / 2| <= H q + 1e-9 m,
-                 q that below which |v1 - v0| stays in nine of ten exchanges
-  passivity      what its motion shows of kinetic energy does not grow by more than the couplers' work
+                 q the bound of |v1 - v0| in nine of ten exchanges
+  passivity      its visible kinetic energy grows by no more than the couplers' work
   mass           a step of 1 kN accelerates it as a mass of 0.2 to 1.5 times the declared one
   stability      the exchange interval H is stable with the train's connections and that mass
   slow           every reply comes within deadline_s
 
-Beside it the built-in ltd model of the same vehicles has the same loads; the largest differences are told, and judged by you.
+The built-in ltd model of the same vehicles gets the same loads; the largest differences are printed, without a verdict.
 Exit codes: 0 all passed, 1 some failed, 2 bad arguments or no vehicle node to test."""
 
 EPSILON_M = 1e-9
@@ -37,7 +37,7 @@ PULL_N = 1e3
 
 
 class Failure(Exception):
-    """A test that cannot go on."""
+    """A test that cannot continue."""
 
 
 class Vehicles:

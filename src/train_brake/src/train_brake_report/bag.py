@@ -1,4 +1,4 @@
-"""What the report needs of a bag: the tables of one train, found by their types."""
+"""The tables of one train in a bag, found by their types."""
 
 import dataclasses
 import pathlib
@@ -15,7 +15,7 @@ from train_brake_report import paper
 
 @dataclasses.dataclass
 class Recording:
-    """What a bag holds of a train. A table is None where the bag lacks the topic."""
+    """The tables of a train in a bag. A table is None if the bag lacks the topic."""
 
     state: Optional[Table] = None
     forces: Optional[Table] = None
@@ -27,8 +27,8 @@ class Recording:
 
 
 def _by_type(bag: BagFile) -> Dict[str, List[str]]:
-    """The topics of each type. Without those under live/, which hold a few of the records once more, unless there are no
-    others."""
+    """The topics of each type. Without those under live/, which hold a few of the records once more, unless there are
+    no others."""
     found: Dict[str, List[str]] = {}
     for topic, info in bag.topics.items():
         found.setdefault(info.kind, []).append(topic)

@@ -1,4 +1,4 @@
-"""The numbers of a run that are read first, and the paper's tables."""
+"""The main numbers of a run, and the paper's tables."""
 
 import dataclasses
 from typing import Iterable, List, Optional
@@ -21,7 +21,7 @@ class Fact:
 
 @dataclasses.dataclass
 class Card:
-    """All of a run that the page needs when the run itself is gone from memory."""
+    """The data of a run that the page needs after the run is released from memory."""
 
     label: str
     name: str
@@ -178,7 +178,7 @@ def paper_row(run: Run) -> Optional[PaperRow]:
 
 
 def calibrated(models: Iterable[str]) -> str:
-    """A sentence on what the values of these models are beside the paper's."""
+    """A sentence comparing the values of these models with the paper's."""
     if "ltd-no-inertia" not in models:
         return "The values here are predictions (docs/validation.md)."
     return "LTD without rotational inertia was calibrated on them; other models are predictions (docs/validation.md)."
@@ -228,7 +228,8 @@ def table_2(rows: List[PaperRow]) -> Figure:
     return Figure(
         "table_2",
         "Table 2: computing time",
-        "The paper's times are those of its 2D train on 243 cores. Those here include the recording of the bag, and depend on the "
+        "The paper's times are those of its 2D train on 243 cores. Those here include the recording of the bag, and "
+        "depend on the "
         "number of threads and wagon nodes and on what else the machine did.",
         table=Table(
             [

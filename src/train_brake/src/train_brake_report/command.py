@@ -19,7 +19,7 @@ from train_brake_report.run import Run, label_runs, scenario_of
 
 DESCRIPTION = """Makes a page with figures of one or several runs of the train: one HTML file that needs no network.
 
-RUN is a folder that a run has left, or a bag, recorded by a run or by rosbag. Several runs are drawn over one another, with
+RUN is the folder of a run, or a bag recorded by a run or by rosbag. Several runs are drawn over one another, with
 differences to the first."""
 EPILOG = "Exit codes: 0 done; 1 a run cannot be read, or the page cannot be written; 2 wrong arguments."
 
@@ -145,7 +145,7 @@ class Report:
             self.rows += filter(None, [cards.paper_row(run)])
 
     def warn_of_numbers(self) -> None:
-        """Of the user that no train has: the figure is left out, and its place tells why."""
+        """An option that fits no train: the figure is left out, with the reason in its place."""
         for option, number, last in (
             ("--wagon", self.options.wagon, self.longest),
             ("--coupler", self.options.coupler, self.longest - 1),

@@ -1,4 +1,4 @@
-"""What stands on the page, in the order in which a reader needs it."""
+"""The contents of the page, in reading order."""
 
 from typing import Callable, List, Tuple, Union
 

@@ -17,13 +17,13 @@ PNG_DPI = 120
 
 
 def minus(number: str) -> str:
-    """A printed number as it stands in a text: with a minus instead of hyphens, and none before a zero."""
+    """A printed number as it appears in a text: with a minus instead of hyphens, and none before a zero."""
     without = re.sub(r"^-(?=[0.]+(?![\d.e]))", "", number)
     return without.replace("-", "\u2212")
 
 
 class LeftOut(Exception):
-    """Why a figure is not there, as a sentence for the page."""
+    """The reason why a figure is missing, as a sentence for the page."""
 
 
 @dataclasses.dataclass
@@ -43,7 +43,7 @@ class Figure:
     table: Optional[Table] = None
 
     def svg(self) -> str:
-        """To stand in a page: no prologue, colours as CSS variables that fall back to themselves."""
+        """For embedding in a page: no prologue, colours as CSS variables that fall back to themselves."""
         text = self._file("svg").decode()
         text = presentable(text[text.index("<svg") :])
         text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)

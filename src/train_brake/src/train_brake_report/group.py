@@ -1,4 +1,4 @@
-"""Runs that are drawn together, and what the user chose to see of them."""
+"""Runs that are drawn together, and the user's options for them."""
 
 import dataclasses
 from typing import Callable, List, Optional, Tuple
@@ -29,7 +29,7 @@ class Group:
     coupler: Optional[int]  # None: the paper's, or the one with the largest force
 
     def drawable(self, why_not: Callable[[Run], str]) -> Tuple[List[Run], str]:
-        """(the runs of which why_not has nothing to say, a sentence on the others); LeftOut if none can be drawn."""
+        """(the runs without a reason from why_not, a sentence on the others); LeftOut if none can be drawn."""
         reasons = {run: why_not(run) for run in self.runs}
         runs = [run for run, reason in reasons.items() if not reason]
         if not runs:

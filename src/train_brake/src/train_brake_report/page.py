@@ -33,7 +33,7 @@ class Section:
 
 
 def _shown(value: object) -> object:
-    """What stands in the page of a value. (Markup is ours already.)"""
+    """A value as text of the page. (Markup is our own.)"""
     return presentable(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
 
 

@@ -95,7 +95,7 @@ def difference(value, papers, where: str = "") -> str:
 
 
 def judge(run, train_sim: Sequence[str]) -> None:
-    """Whether the run is one of the paper's; a note says why one that is called so is not."""
+    """Whether the run is one of the paper's; if only its name is, a note says why it is not."""
     if not (
         run.scenario in SCENARIOS
         and run.model in MODELS

@@ -25,7 +25,7 @@ MODEL_NAMES = {"2d": "2D train", "ltd": "LTD", "ltd-no-inertia": "LTD without ro
 
 
 class Run:
-    """One run, read. What neither the bag nor its folder knows is None."""
+    """One run, read. Values that neither the bag nor its folder has are None."""
 
     def __init__(self, given: pathlib.Path, wagon: Optional[int]):
         self.given = given
@@ -97,7 +97,7 @@ class Run:
 
     @property
     def reached_its_end(self) -> Optional[bool]:
-        """None: unknown, a bag alone does not tell."""
+        """None: unknown, because there is only a bag."""
         if self.summary is not None:
             return bool(self.summary.get("complete"))
         if self.config is not None:
@@ -160,7 +160,8 @@ class Run:
 
     @functools.cached_property
     def largest_coupler_forces_n(self) -> numpy.ndarray:
-        """[0: tension, 1: compression][connection]: of all exchanges if the run wrote couplers.csv, else of the records."""
+        """[0: tension, 1: compression][connection]: of all exchanges if the run wrote couplers.csv, else of the
+        records."""
         if self.couplers_file is None:
             forces = self.recording.forces["coupler_force_n"]
             return numpy.array([numpy.maximum(forces.max(axis=0), 0.0), numpy.minimum(forces.min(axis=0), 0.0)])
@@ -174,7 +175,7 @@ class Run:
 
     @property
     def commands(self) -> List[dict]:
-        """Those with a time, and those that were given on the way: by a condition of the scenario, or live."""
+        """Commands with a time, and those given during the run: by a condition of the scenario, or live."""
         listed = (self.config or {}).get("commands") or []
         timed = [
             c for c in listed if c.get("time_s") is not None and c["kind"] != "friction"
@@ -200,7 +201,7 @@ def scenario_of(given: pathlib.Path) -> str:
 
 
 def label_runs(runs: List[Run]) -> None:
-    """Names each run by what tells it from the others: its model, else its scenario, its folder, its path."""
+    """Names each run by what distinguishes it from the others: its model, else its scenario, its folder, its path."""
     for name in (
         lambda r: MODEL_NAMES.get(r.model, r.model),
         lambda r: r.scenario,

@@ -1,4 +1,4 @@
-"""Time series of many vehicles: common instants of two runs, and what is left of them in a picture."""
+"""Time series of many vehicles: common instants of two runs, and their reduction to the columns of a picture."""
 
 from typing import Tuple
 
@@ -6,7 +6,7 @@ import numpy
 
 
 def common_rows(time_a_s: numpy.ndarray, time_b_s: numpy.ndarray) -> Tuple[numpy.ndarray, numpy.ndarray]:
-    """Indices of the records of two runs that are of the same instants, to the microsecond."""
+    """Indices of the records of two runs at the same instants, to the microsecond."""
     _, a, b = numpy.intersect1d(numpy.round(1e6 * time_a_s), numpy.round(1e6 * time_b_s), return_indices=True)
     return a, b
 

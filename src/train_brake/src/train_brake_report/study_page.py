@@ -129,7 +129,7 @@ def _against(study: Study, rows: Rows, x: str, others: Sequence[str], result: st
 
 
 def _ensemble(rows: Rows, result: str, drawn: Sequence[str]) -> Figure:
-    """How a result is distributed over the draws: share of runs below, and over each key that was drawn."""
+    """The distribution of a result over the draws: share of runs below, and over each key that was drawn."""
     title, factor = _title(result)
     numeric = [path for path in drawn if all(_number(row[path]) is not None for row in rows)]
     canvas = new_canvas(3.8)

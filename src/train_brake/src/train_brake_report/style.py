@@ -167,10 +167,11 @@ MOST_COMMANDS = 12  # that a figure names
 def mark_commands(
     axes: Axes, marks: Sequence[Tuple[dict, str, str]], named: bool = True, at_bottom: bool = False
 ) -> None:
-    """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their names.
+    """Thin lines at the times of the driver's commands: of many, those of the brake; of still more, without their
+    names.
 
-    marks: (command, colour, whose it is; empty: all runs'). Call it when all is drawn: the names get rows of their own, beyond
-    the curves, and no two of them share a place."""
+    marks: (command, colour, whose it is; empty: all runs'). Call it when all is drawn: the names get rows of their own,
+    beyond the curves, and no two of them share a place."""
     if len(marks) > MOST_COMMANDS:
         marks = [mark for mark in marks if "notch" not in mark[0]]
         named = named and len(marks) <= MOST_COMMANDS

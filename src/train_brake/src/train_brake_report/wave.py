@@ -1,8 +1,8 @@
 """The speed of the brake wave, from the recorded cylinder pressures alone.
 
-1. When it reaches a vehicle: a straight line through the pressure's first rise (or fall), from 0.5 % to 5 % of it, meets
-   the pressure before at the arrival t_i. The rise is no straight line; that shifts t_i by about 1 % of 1/beta times
-   0.1 (1 ms), nearly the same for neighbours.
+1. When it reaches a vehicle: a straight line through the pressure's first rise (or fall), from 0.5 % to 5 % of it,
+   meets the pressure before at the arrival t_i. The rise is no straight line; that shifts t_i by about 1 % of 1/beta
+   times 0.1 (1 ms), nearly the same for neighbours.
 2. Along the train t_i goes up and down: waves leave several sources and meet. A branch is a stretch where t_i climbs or
    falls steadily with the distance d_i behind the first vehicle, without its end: there the other wave may be first.
 3. All branches share one slowness s = 1/c [s/m], each has its own start: least squares over

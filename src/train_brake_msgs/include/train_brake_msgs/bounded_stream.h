@@ -13,11 +13,11 @@
 
 namespace train_brake_msgs {
 
-/// Reads a message from bytes of which nothing is trusted.
+/// Reads a message from untrusted bytes.
 ///
-/// roscpp's IStream makes room for as many elements as an array announces before it looks whether their bytes
-/// are there; here the bytes come first. Every byte is read once, so that a process that shares the memory cannot
-/// change a number after it was checked.
+/// roscpp's IStream allocates as many elements as an array announces before it checks that their bytes exist; here the
+/// bytes are checked first. Every byte is read once, so that a process that shares the memory cannot change a number
+/// after it was checked.
 class BoundedStream : public ros::serialization::Stream {
  public:
   static const ros::serialization::StreamType stream_type = ros::serialization::stream_types::Input;
@@ -46,8 +46,8 @@ class BoundedStream : public ros::serialization::Stream {
   }
 };
 
-/// Reads a message that is expected to fill those bytes.
-/// @throws std::exception if they are none; the message may then hold anything
+/// Reads a message that must fill those bytes. @throws std::exception if they are not such a message, which then holds
+/// arbitrary values
 template <class Message>
 void ReadMessage(std::uint8_t* data, std::uint32_t size, Message& message) {
   BoundedStream stream(data, size);

@@ -25,7 +25,7 @@
 /// Memory that a train's master shares with those wagon nodes that run on the same machine: the service Step
 /// without sockets.
 ///
-///   memory    a head, then slots. A slot belongs to one process for good, and holds its request and its
+///   memory    a head, then slots. A slot belongs permanently to one process, and holds its request and its
 ///             reply, serialised as they are on the wire.
 ///   call c    master  writes the requests, numbers them c, and wakes all ranks at once
 ///             rank    finds its request numbered c, moves its vehicles, writes its reply, numbers it c, and
@@ -36,14 +36,14 @@
 /// given up and wakes up late can wake the master too early, but its slot is not read any more.
 ///
 /// The memory is a file without a name (memfd_create(2)): it cannot outlive the processes that use it. They
-/// open it as /proc/PID/fd/DESCRIPTOR of the master, which only who may look into the master anyway can. It is
-/// sealed against changes of its size.
+/// open it as /proc/PID/fd/DESCRIPTOR of the master, which needs the permission to read the master's memory anyway. It
+/// is sealed against changes of its size.
 namespace train_brake_msgs {
 
 constexpr std::size_t kCacheLine = 64;
 
-/// An event count between processes: who reads it before looking for work misses no event, however late the wait
-/// begins.
+/// An event count between processes: a thread that reads it before looking for work misses no event, however late its
+/// wait begins.
 class alignas(kCacheLine) EventCount {
  public:
   std::uint32_t count() const { return count_.load(); }
@@ -69,8 +69,8 @@ class alignas(kCacheLine) EventCount {
   std::atomic<std::uint32_t> waiters_;  ///< too many if some died in their sleep, which costs a needless call
 };
 
-/// Spins for a short while before a sleep. That saves the time it takes to wake up, but keeps the core from whoever
-/// needs it, which shows only afterwards: after each spin in vain, twice as many waits (16 to 4096) go without.
+/// Spins for a short while before a sleep. That saves the time of a wake-up, but may keep the core from another thread,
+/// which shows only afterwards: after each spin in vain, twice as many waits (16 to 4096) do not spin.
 class AdaptiveSpin {
  public:
   /// @return whether there has been an event since the count was read
@@ -100,12 +100,12 @@ class AdaptiveSpin {
   int to_leave_out_ = kFewest;
 };
 
-/// Yields the core to others up to so many times, as long as there has been no event since the count was read. With
-/// many ranks on a core that takes less time than to sleep and be woken, as long as the others are ranks, too; beside
-/// other work each yield may take as long as that wants.
+/// Yields the core up to this many times, until there is an event since the count was read. With many ranks on a core
+/// that is faster than a sleep and a wake-up if the others are ranks, too; with other work on the core, a yield may
+/// take as long as that work.
 /// @return whether there has been an event
 inline bool YieldUntil(const EventCount& event, std::uint32_t seen, std::uint32_t yields) {
-  constexpr std::uint32_t kMost = 64;  // so that whoever waits for long sleeps soon
+  constexpr std::uint32_t kMost = 64;  // so that a long wait soon becomes a sleep
   for (std::uint32_t i = 0; i < std::min(yields, kMost) && event.count() == seen; ++i) sched_yield();
   return event.count() != seen;
 }
@@ -119,7 +119,7 @@ class MessageBuffer {
   std::uint64_t call() const { return call_.load(std::memory_order_acquire); }
 
   /// @param room  bytes that follow it
-  /// @return whether the message fits; if not, the buffer says that instead
+  /// @return whether the message fits; if not, the buffer records that instead
   template <class Message>
   bool Write(std::uint64_t call, const Message& message, std::uint32_t room) {
     const std::uint32_t size = ros::serialization::serializationLength(message);
@@ -155,7 +155,7 @@ class MessageBuffer {
 
 /// How the memory is laid out. It begins with this.
 struct ExchangeLayout {
-  static constexpr std::uint64_t kMagic = 0x32706174536e6954;  ///< another one for every other layout
+  static constexpr std::uint64_t kMagic = 0x32706174536e6954;  ///< a different value for every layout
 
   std::uint64_t magic = kMagic;
   std::uint64_t run_id = 0;
@@ -175,7 +175,7 @@ struct ExchangeLayout {
   static std::size_t WholeLines(std::size_t size) { return (size + kCacheLine - 1) / kCacheLine * kCacheLine; }
 };
 
-/// What the slots follow. All zero in the beginning, but the layout.
+/// The head, followed by the slots. Initially all zero, except the layout.
 struct ExchangeHead {
   ExchangeLayout layout;
   std::atomic<std::uint32_t> threads;      ///< of the ranks that use the memory
@@ -197,7 +197,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std
 /// The memory as a process sees it.
 class ExchangeMemory {
  public:
-  /// Maps what a process has open: another one, or this.
+  /// Maps a descriptor that another process, or this one, has open.
   /// @throws std::exception if this process cannot do that, or if it is not the memory of that run
   ExchangeMemory(std::uint32_t pid, std::uint32_t descriptor, std::uint64_t run_id) {
     namespace ipc = boost::interprocess;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-/// Between WagonState and the struct that holds the same in the physics: one list of what corresponds to
-/// what.
+/// The one list of corresponding fields of WagonState and of its struct in the physics.
 namespace train_brake_msgs {
 
 /// Calls copy(field of the detail, field of the message) for all that a vehicle computes itself. What acts on

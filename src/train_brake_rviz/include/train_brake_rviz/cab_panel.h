@@ -20,9 +20,8 @@ namespace train_brake_rviz {
 /// The cab of a train in rviz: throttle, dynamic brake and brake handle; speed, limits and grade ahead, pressures,
 /// in-train forces. The train is the one in the namespace of rviz's node; for an rviz in no namespace, /train.
 ///
-/// The controls show what the train obeys (live/driver_view), whatever has commanded it, and give commands by
-/// driver/give; what is refused is told in the last line. Messages must arrive in the window's thread, as they do in
-/// rviz.
+/// The controls show what the train obeys (live/driver_view), whatever its source, and give commands by driver/give;
+/// refusals are shown in the last line. Messages must arrive in the window's thread, as they do in rviz.
 class CabPanel : public rviz::Panel {
   Q_OBJECT
 

@@ -12,7 +12,7 @@
 
 namespace train_brake_rviz {
 
-/// What came of a request, in words for the user.
+/// The outcome of a request, in words for the user.
 struct Answer {
   bool success = false;
   std::string message;
@@ -40,11 +40,11 @@ class RunClient {
   ros::NodeHandle train_;
 };
 
-/// A thread that does one thing after the other, so that a window need not wait.
+/// A thread that executes tasks in order, so that a window need not wait.
 class Worker {
  public:
   Worker();
-  /// Finishes what it is doing and drops the rest.
+  /// Finishes the present task and drops the others.
   ~Worker();
   void Do(std::function<void()> task);
 

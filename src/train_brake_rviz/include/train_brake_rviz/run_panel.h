@@ -22,8 +22,8 @@ namespace train_brake_rviz {
 /// the vehicles and which one is followed. The train is the one in the namespace of rviz's node, as launched with
 /// it; for an rviz in no namespace, /train.
 ///
-/// The buttons show what the train says of itself (live/status, view/selection), not what was pressed last.
-/// Messages must arrive in the window's thread, as they do in rviz.
+/// The buttons show the train's reported state (live/status, view/selection), not what was pressed last. Messages must
+/// arrive in the window's thread, as they do in rviz.
 class RunPanel : public rviz::Panel {
   Q_OBJECT
 

@@ -64,7 +64,7 @@ Board::Board(const train_dynamics::ScenarioParams& scenario, const BoardOptions&
       pressure_limit_kpa_(kLeastPressure) {
   for (int i = 0; i < vehicles(); ++i) masses_kg_.push_back(consist_.vehicle(i).TotalMass());
   if (vertical_exaggeration_ <= 0.0) {
-    // What comes into view of a train that does not gain speed.
+    // The track that comes into view if the train does not gain speed.
     const double way = scenario.MeanInitialSpeed() * scenario.duration_s;
     const double front = scenario.start_position_m;
     vertical_exaggeration_ =

@@ -36,7 +36,7 @@ double MeanOfWheelsets(const CloseUp::Bodies& position, int wheelsets) {
 
 std::string Kilonewtons(double force_n) { return Rounded(1e-3 * force_n, 0) + " kN"; }
 
-/// What is drawn of a vehicle: of one that is one mass, bodies of usual sizes, because it has none.
+/// The bodies drawn for a vehicle; for one given as one mass, bodies of usual sizes.
 train_dynamics::VehicleParams WithBodies(train_dynamics::VehicleParams vehicle) {
   if (!vehicle.IsOneMass()) return vehicle;
   vehicle.mass_kg.reset();
@@ -220,8 +220,8 @@ void CloseUp::DrawContactForces(Drawing& drawing, const train_dynamics::WagonDet
     arrow({contact.right, contact.up - 0.1}, {contact.right + kFrictionScale * creep, contact.up - 0.1},
           palette::kOrange);
 
-    // The shoe stands on the bogie's inner side of the wheel. Its friction acts along the tread: against a
-    // forward turning wheel, upwards on the front half of the wheel and downwards on the rear half.
+    // The shoe is on the bogie's inner side of the wheel. Its friction acts along the tread: against a forward turning
+    // wheel, upwards on the front half of the wheel and downwards on the rear half.
     const bool on_front_half = i % 2 == 1;
     const double side = (on_front_half ? -1.0 : 1.0) * scale_ * radius;
     const double shoe = (on_front_half ? 1.0 : -1.0) * kFrictionScale * detail.output.shoe_force_n[i];

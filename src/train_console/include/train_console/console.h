@@ -6,7 +6,7 @@
 
 namespace train_console {
 
-/// Makes a process independent of who reads what it says. Call it first in main, before any file is opened.
+/// Makes a process independent of the readers of its output. Call it first in main, before any file is opened.
 ///
 /// - Descriptors 0, 1 and 2 that are closed become /dev/null. Otherwise the next files that are opened get these
 ///   numbers, and messages are written into results.
@@ -23,7 +23,7 @@ std::string Presentable(const std::string& text);
 /// Text as one word of a shell's command: as it is, or quoted where a shell would split or change it.
 std::string ShellWord(const std::string& text);
 
-/// Writes to the standard error, or not, if that cannot be written. Never throws.
+/// Writes to the standard error; drops the text if that fails. Never throws.
 void WriteMessage(const std::string& text) noexcept;
 
 /// A message to people: presentable, see WriteMessage. Never throws.
@@ -35,7 +35,7 @@ void Tell(fmt::format_string<Values...> format, Values&&... values) noexcept {
   }
 }
 
-/// Writes to the standard output. A failure does not show here but in FinishOutput.
+/// Writes to the standard output. A failure is reported by FinishOutput, not here.
 void WriteOutput(const std::string& text);
 
 /// A part of a program's output: presentable, see WriteOutput.
@@ -44,7 +44,7 @@ void Print(fmt::format_string<Values...> format, Values&&... values) {
   WriteOutput(Presentable(fmt::format(format, std::forward<Values>(values)...)));
 }
 
-/// Writes what is left of the output, of whatever part of the program.
+/// Flushes the output of all parts of the program.
 /// @return why some of it could not be written; empty: all was
 std::string FinishOutput();
 

@@ -15,7 +15,7 @@ struct BrokenRule {
   std::vector<std::string> reads;  ///< paths of what it reads besides `key`; "[]" in a path: all entries of a list
 };
 
-/// Tells a visitor of them.
+/// Reports the broken rules to a visitor.
 template <class Visitor>
 void Check(const std::vector<BrokenRule>& broken, Visitor& v) {
   for (const BrokenRule& rule : broken) {
@@ -26,7 +26,7 @@ void Check(const std::vector<BrokenRule>& broken, Visitor& v) {
   }
 }
 
-/// Something that is allowed but most likely not meant, or beyond what was shown to work.
+/// A setting that is allowed but probably unintended, or outside the validated range.
 struct Warning {
   std::string key;   ///< its path in the configuration
   std::string text;  ///< a sentence with numbers and remedy

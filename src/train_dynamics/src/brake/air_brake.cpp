@@ -19,7 +19,7 @@ std::string Index(std::size_t i) { return "[" + std::to_string(i) + "]"; }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What a command does.
+/// The effect of a command.
 enum class Effect {
   kNone,
   kApplication,
@@ -36,7 +36,7 @@ double StrengthOf(const BrakeCommand& command) {
   return command.kind == BrakeCommandKind::kRelease ? 0.0 : command.reduction_kpa;
 }
 
-/// What the commands do, one by one, and which of them was in the way of one without effect.
+/// The effect of each command and, for one without effect, the command that caused this.
 struct Obeyed {
   Effect effect = Effect::kNone;
   std::size_t because_of = 0;  ///< index of the stronger command of the same time, or of the emergency
@@ -53,7 +53,7 @@ std::vector<Obeyed> Obey(const AirBrakeParams& params, const std::vector<BrakeCo
       if (StrengthOf(commands[end]) > StrengthOf(commands[strongest])) strongest = end;
     }
     for (std::size_t i = first; i < end; ++i) obeyed[i].because_of = strongest;
-    first = std::max(end, first + 1);  // a time that is not a number equals none
+    first = std::max(end, first + 1);  // NaN equals no time
     const BrakeCommand& command = commands[strongest];
     Obeyed& now = obeyed[strongest];
     const bool is_release = command.kind == BrakeCommandKind::kRelease;

@@ -3,7 +3,7 @@
 namespace train_dynamics {
 namespace {
 
-/// What a brake is made of beside its parameters.
+/// What a brake is built from besides its parameters.
 struct OfTrain {
   const std::vector<BrakeCommand>& commands;
   const std::vector<double>&vehicle_positions_m, &vehicle_length_m;

@@ -13,7 +13,7 @@ struct Size {
   double least, largest;
 };
 
-// The longest that fits counts: keys before units.
+// The longest match counts: keys before units.
 constexpr Size kSizes[] = {
     {"wheel_radius_m", 0.1, 2.0},
     {"wheel_lateral_radius_m", 0.01, 1e6},

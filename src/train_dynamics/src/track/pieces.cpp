@@ -21,8 +21,8 @@ Pieces::Pieces(std::vector<double> cuts_m) : bounds_(std::move(cuts_m)) {
   bounds_.push_back(Stretch().to_m);
 }
 
-/// Rises with the position, to the last bit: subtraction and multiplication by a number >= 0 do. A cut of an earlier
-/// cell therefore lies before the position, one of a later cell behind it.
+/// Rises monotonically with the position, to the last bit, as do subtraction and multiplication by a number >= 0. A cut
+/// of an earlier cell therefore lies before the position, one of a later cell behind it.
 int Pieces::CellOf(double position_m) const {
   const double cell = (position_m - first_m_) * cells_per_m_;
   if (!(cell > 0.0)) return 0;

@@ -54,7 +54,8 @@ void Sweep(const std::vector<Span>& spans, const Function& piece) {
   }
 }
 
-/// Where a dip may be felt: a little longer than it is, because DipHeight judges its end by a difference.
+/// The stretch on which a dip may have an effect: a little longer than it is, because DipHeight judges its end by a
+/// difference.
 Span SpanOf(const DipParams& dip) {
   const double to_m = dip.from_m + dip.length_m;
   return {dip.from_m, to_m + 1e-15 * (std::abs(dip.from_m) + std::abs(to_m))};
@@ -184,7 +185,7 @@ void TrackParams::JudgeHeights(std::vector<BrokenRule>& broken) const {
   }
 }
 
-/// What the points give, nothing else may give.
+/// A quantity given by the points must not be given elsewhere.
 void TrackParams::JudgePoints(std::vector<BrokenRule>& broken) const {
   const auto first_with = [this](const auto& has) -> std::optional<std::size_t> {
     const auto found = std::find_if(points.begin(), points.end(), has);
@@ -241,7 +242,7 @@ void TrackParams::JudgeRamps(std::vector<BrokenRule>& broken) const {
   for (std::size_t i = 1; i < changes.size(); ++i) {
     const SurfaceChange &one = changes[i - 1], &next = changes[i];
     if (one.End() <= next.Begin() + kRounding) continue;
-    // The ramp that is there is named before a sharp end.
+    // An existing ramp is reported before a sharp end.
     const SurfaceChange& named = next.ramp_m > 0.0 ? next : one;
     broken.push_back({"friction_patches" + Index(named.patch) + ".ramp_length_m",
                       "must leave room to the next change of the surface: half of a ramp lies on each side "
@@ -266,7 +267,7 @@ void AddSteps(const std::vector<RoutePointParams>& points, const Value& value, s
   }
 }
 
-/// The grades between heights, and level track behind the last. (Before the first the caller sees to that.)
+/// The grades between heights, and level track behind the last. (Before the first, the caller sets level track.)
 std::vector<StepValue> GradesBetween(const std::vector<HeightParams>& heights) {
   std::vector<StepValue> steps;
   if (heights.empty()) return steps;
@@ -327,7 +328,7 @@ std::vector<StepValue> TrackParams::SpeedLimits() const {
 }
 
 std::vector<FrictionPatchParams> TrackParams::Patches() const {
-  constexpr double kFarAway = 1e6;  // [m] farther than any train gets
+  constexpr double kFarAway = 1e6;  // [m] beyond the reach of any train
   std::vector<FrictionPatchParams> patches = friction_patches;
   std::vector<StepValue> steps;
   AddSteps(
@@ -411,7 +412,7 @@ void Track::SetPatches() {
       surfaces_.push_back(piece);
       last_m = at_m;
     } else {
-      surfaces_.back() = piece;  // nothing is left of the piece before, which ramps took from both sides
+      surfaces_.back() = piece;  // ramps from both sides have used up the piece before
     }
   };
   for (const SurfaceChange& change : ChangesOf(patches_)) {

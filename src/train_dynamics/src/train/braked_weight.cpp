@@ -38,7 +38,8 @@ double BuildUpTime(double length_m, BrakingPosition position) {
 double BrakedWeightPercentage(double speed_kmh, double stopping_distance_m) {
   if (speed_kmh == 100.0) return 61300.0 / stopping_distance_m - 8.9;
   if (speed_kmh == 120.0) return 83634.0 / stopping_distance_m - 8.8;
-  throw std::invalid_argument("braked weight is told by stops from 100 or 120 km/h, not " + std::to_string(speed_kmh));
+  throw std::invalid_argument("braked weight is defined for stops from 100 or 120 km/h, not from " +
+                              std::to_string(speed_kmh));
 }
 
 double EtcsStoppingDistance(double lambda, double length_m, double speed_kmh, BrakingPosition position) {

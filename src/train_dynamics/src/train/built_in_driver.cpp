@@ -12,7 +12,7 @@ constexpr double kStandingMps = 0.02;
 constexpr double kSpeedStepMps = 10.0 / 3.6;
 constexpr int kSpeeds = 13;
 constexpr int kShareSeconds = 60;
-constexpr double kReadyShare = 0.7;         // of the way to the next notch at which it is taken
+constexpr double kReadyShare = 0.7;         // of the step to the next notch, at which it is taken
 constexpr double kBrakeShare = 0.25;        // of the first reduction's force that must be lacking, or too much
 constexpr double kStopDeceleration = 0.08;  // [m/s2] that the last application before a stop must give at least
 constexpr double kLargestDemand = 0.5;      // [m/s2]
@@ -79,7 +79,7 @@ void MoveLever(const BuiltInDriverParams& p, const DriversTrain& train, double f
     hands.Lever(at - 1);
 }
 
-/// Until an application has half of its force [s].
+/// Time until an application has half of its force [s].
 double AnswerTime(const DriversTrain& train) {
   int second = 0;
   while (second < kShareSeconds && train.application_share[second] < 0.5) ++second;
@@ -113,7 +113,7 @@ void MoveHandle(const BuiltInDriverParams& p, const DriversTrain& train, double 
   if (lacking_n < now_n - 1.25 * (now_n - train.BrakeForce(p, lower_kpa, v))) hands.Apply(lower_kpa);
 }
 
-/// Takes a step of the driver's own idea of the shoes' force.
+/// Advances the driver's estimate of the shoes' force by a step.
 void FeelBrake(const BuiltInDriverParams& p, const DriversTrain& train, const DriverView& view,
                BuiltInDriverState& state) {
   const double full_n = train.BrakeForce(p, view.reduction_kpa, std::abs(view.speed_mps));
@@ -298,7 +298,7 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
   constexpr double kLead_s = 15.0;
   const SpeedGoal goal = GoalAt(p, view, stop_m, kLead_s);
   const double missing_mps = goal.speed_mps - v;
-  // The planned deceleration is of one who is near the goal: a slow train need not slow down yet.
+  // The planned deceleration applies near the goal speed: a slow train need not brake yet.
   const double planned_mps2 = goal.acceleration_mps2 * std::clamp(2.0 * v / goal.speed_mps - 1.0, 0.0, 1.0);
   const double demand = std::clamp(planned_mps2 + missing_mps / p.response_time_s, -kLargestDemand, kLargestDemand);
   const double force_n =
@@ -316,7 +316,7 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
   const double dynamic_n = -train.Effort(-train.dynamic_brake_notches, std::abs(v));
   if (state.lever > 0.0) return hands.commands;
   const double lacking_n = -force_n - dynamic_n;
-  // What the speed will have become by then, with the dynamic brake alone, asks for more.
+  // The speed predicted for then, with the dynamic brake alone, needs more force.
   const double downhill_n = -train.mass_kg * (kGravity * view.mean_grade + state.resistance_mps2);
   const double gain_mps =
       std::max(0.0, downhill_n - dynamic_n - state.air_n) / train.moving_mass_kg * AnswerTime(train);

@@ -5,8 +5,8 @@
 namespace train_dynamics {
 namespace {
 
-/// The steps of a quantity on (from_m, to_m], by rising position; a piece with the same value as that before it is
-/// none.
+/// The steps of a quantity on (from_m, to_m], by rising position; a piece with the value of the piece before it is no
+/// step.
 std::vector<PlaceAhead> StepsOn(const StepFunction& steps, double from_m, double to_m) {
   std::vector<PlaceAhead> ahead;
   for (StepFunction::Held held = steps.From(from_m); held.on.to_m <= to_m;) {

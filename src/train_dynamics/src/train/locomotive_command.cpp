@@ -7,7 +7,7 @@
 namespace train_dynamics {
 namespace {
 
-/// Why a locomotive cannot do what a command asks for; empty: it can.
+/// Why a locomotive cannot obey a command; empty: it can.
 std::string WhyNot(const LocomotiveCommand& command, const TractionParams& traction) {
   if (command.kind == LocomotiveCommandKind::kDynamicBrake) {
     if (!traction.dynamic_brake) return "must be throttle for a locomotive without dynamic_brake";

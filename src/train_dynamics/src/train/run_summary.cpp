@@ -8,9 +8,9 @@ namespace {
 
 /// A train has stopped when its mean speed has come down to this [m/s]; carbodies may rock on for seconds.
 constexpr double kStandstill = 1e-3;
-/// It is under way again when its mean speed exceeds this [m/s]: more than any rocking.
+/// It moves again when its mean speed exceeds this [m/s]: more than any rocking.
 constexpr double kMoving = 0.1;
-/// It has rolled back when it has come back from its furthest place by more than this [m]: more than a slack train does
+/// It has rolled back when it has come back from its furthest position by more than this [m]: more than a bunched train
 /// that stretches at rest.
 constexpr double kRolledBack = 0.5;
 
@@ -35,7 +35,7 @@ void RunSummary::JudgeMotion(const TrainRecord& record) {
   if (!Stands() && (std::abs(mean_speed_mps_) <= kStandstill || turns)) {
     stops_.push_back({record.time_s, mean_distance_m_, kNone});
   }
-  // It may stop and be under way again within one record interval.
+  // It may stop and move again within one record interval.
   if (Stands() && std::abs(mean_speed_mps_) > kMoving) stops_.back().until_s = record.time_s;
   furthest_m_ = std::max(furthest_m_, Forward() * mean_distance_m_);
   const std::vector<double>& position_m = record.vehicles.position_m;

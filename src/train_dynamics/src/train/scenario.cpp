@@ -282,7 +282,7 @@ void ScenarioParams::JudgeDriver(std::vector<BrokenRule>& broken) const {
 
 void ScenarioParams::JudgeDips(std::vector<BrokenRule>& broken) const {
   if (!Uses(VehicleModel::kTwoD) || train.consist.empty()) return;
-  /// Where vehicles of the 2D model stand at the start, without a gap.
+  /// The positions of the 2D vehicles at the start, without a gap.
   struct StandingStretch {
     double rear_m, front_m;
   };

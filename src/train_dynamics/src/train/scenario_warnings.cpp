@@ -10,7 +10,7 @@ namespace {
 
 std::string Counted(std::size_t entries) { return std::to_string(entries) + (entries == 1 ? " entry" : " entries"); }
 
-/// Warns of a connection that the exchange interval or the step is too long for.
+/// Warns of a connection for which the exchange interval or the step is too long.
 void WarnOfConnection(const ScenarioParams& scenario, const std::string& key, const ConnectionParams& connection,
                       double lightest_kg, std::vector<Warning>& warnings) {
   const ConnectionLaw law = connection.Law();
@@ -20,9 +20,10 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key, co
   // A multiple of dt_s may exceed the limit by no more than a rounding error.
   if (scenario.exchange_interval_s > (1.0 + 1e-9) * longest_s) {
     warnings.push_back({"exchange_interval_s", "exchange_interval_s " + ShortNumber(scenario.exchange_interval_s) +
-                                                   " is above " + ShortNumber(longest_s) + ", the longest that " + key +
-                                                   " stands" + (depends_on_force ? " at 900 kN" : "") +
-                                                   ": coupler forces may break down; take a shorter one"});
+                                                   " is above " + ShortNumber(longest_s) +
+                                                   ", the longest stable one of " + key +
+                                                   (depends_on_force ? " at 900 kN" : "") +
+                                                   ": coupler forces may diverge; take a shorter one"});
   }
   const auto* smooth = std::get_if<SmoothGears>(&law);
   if (smooth == nullptr) return;
@@ -36,7 +37,7 @@ void WarnOfConnection(const ScenarioParams& scenario, const std::string& key, co
                                      " kg: the friction of the draft gears may chatter; take a smaller dt_s"});
 }
 
-/// The positions that wheels can have in a run at most.
+/// The range of positions that wheels can reach in a run.
 ///
 /// Nothing but the grade and traction drives a train: its speed stays below that of the start plus T times the largest
 /// acceleration that they can give, and likewise backwards, where traction does not drive.
@@ -65,7 +66,7 @@ Stretch ReachOf(const ScenarioParams& scenario) {
   return {rear_m - way(-slowest_mps, steepest_rise), front_m + way(fastest_mps, steepest_fall + traction_n / weight_n)};
 }
 
-/// Warns once of the entries of a list of the track that no wheel reaches.
+/// Warns once of entries in a list of the track that no wheel reaches.
 template <class Entry, class EndOf>
 void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, const EndOf& end_of, const Stretch& reach,
                  std::vector<Warning>& warnings) {
@@ -82,7 +83,7 @@ void WarnOfReach(const std::string& list, const std::vector<Entry>& entries, con
                                (beyond == 1 ? "" : " (" + Counted(beyond) + " of " + list + " are not)")});
 }
 
-/// Where a train does not begin on its route.
+/// Warns of a train that does not begin on its route.
 void WarnOfStart(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
   const Stretch route = scenario.track.Extent();
   if (scenario.train.consist.empty()) return;
@@ -96,7 +97,7 @@ void WarnOfStart(const ScenarioParams& scenario, std::vector<Warning>& warnings)
                                               " m), where the first or the last of its values holds on"});
 }
 
-/// Warns of a locomotive whose effort is more than a rail gives or than its own power.
+/// Warns of a locomotive whose effort exceeds the adhesion or its own power.
 void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
   constexpr double kLargestAdhesion = 0.36;
   constexpr double kRounding = 1e-3;  // of efforts in tables
@@ -121,7 +122,7 @@ void WarnOfTraction(const ScenarioParams& scenario, std::vector<Warning>& warnin
   }
 }
 
-/// Warns of groups of LTD vehicles whose brake asks for more than the rail gives somewhere.
+/// Warns of groups of LTD vehicles whose brake force exceeds the adhesion somewhere.
 void WarnOfAdhesionLimit(const ScenarioParams& scenario, std::vector<Warning>& warnings) {
   if (!scenario.brake || scenario.brake->kind != BrakeSystemKind::kEmpirical || !scenario.pressure_table.empty())
     return;

@@ -13,10 +13,10 @@ namespace train_dynamics {
 namespace {
 
 constexpr double kLookEvery = 0.5;  ///< [m]
-/// What no train does, but a damaged checkpoint may say [m]: a way between two looks, the length of the track.
+/// Limits [m] that no train exceeds, but a damaged checkpoint may: distance between two samples, length of the track.
 constexpr double kLongestWay = 1e5, kLongestTrack = 1e7;
 
-/// Adds work that was done evenly over a way to the metres that it covers.
+/// Spreads work evenly over the metres of a distance.
 void Spread(double from_m, double to_m, double creep_j, double brake_j, TrackWork& track) {
   if (from_m > to_m) std::swap(from_m, to_m);
   if (!(to_m - from_m < kLongestWay) || !(std::abs(from_m) < 1e15)) return;
@@ -24,7 +24,7 @@ void Spread(double from_m, double to_m, double creep_j, double brake_j, TrackWor
   if (track.creep_j.empty()) track.from_m = first;
   if (static_cast<double>(std::abs(first - track.from_m)) > kLongestTrack) return;
   if (first < track.from_m) {
-    // Room for what comes, not only for this metre: trains go on in their direction.
+    // Room for the metres to come, not only for this one: trains keep their direction.
     const long before = track.from_m - first + 1000;
     track.creep_j.insert(track.creep_j.begin(), before, 0.0);
     track.brake_j.insert(track.brake_j.begin(), before, 0.0);

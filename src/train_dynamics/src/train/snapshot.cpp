@@ -57,7 +57,7 @@ bool IsWholeOldOne(const Bytes& bytes) {
   return ByteReader(bytes.data() + end, kWord).Word() == OldChecksum(bytes.data(), end);
 }
 
-/// What stands between mark and checksum.
+/// The bytes between mark and checksum.
 ByteReader ContentsOf(const Bytes& bytes) { return {bytes.data() + kHead, bytes.size() - kHead - kWord}; }
 
 /// @param what  "a checkpoint", for messages
@@ -66,7 +66,7 @@ std::uint64_t FormatOf(const Bytes& bytes, const char* mark, const std::string& 
   return ByteReader(bytes.data() + kWord, bytes.size() - kWord).Word();
 }
 
-/// Who wrote a checkpoint of a train, of whatever format, from the first line of its scenario.
+/// The program that wrote a checkpoint of any format, from the first line of its scenario.
 std::string WriterOf(const Bytes& bytes) {
   if (!IsWhole(bytes) && !IsWholeOldOne(bytes)) return "an unknown program";
   const std::string scenario = ContentsOf(bytes).Text();

@@ -12,12 +12,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What it takes to wake a thread, about, and longer than what the caller does between two rounds.
+/// About the time of a wake-up, and longer than the caller's work between two rounds.
 constexpr std::chrono::microseconds kSpin{50};
 
 template <class Condition>
 bool Spin(const Condition& done) {
-  constexpr int kLooks = 100;  // at the condition for one at the clock
+  constexpr int kLooks = 100;  // checks of the condition per check of the clock
   const Clock::time_point end = Clock::now() + kSpin;
   do {
     for (int i = 0; i < kLooks; ++i) {

@@ -10,7 +10,7 @@ namespace train_dynamics {
 
 namespace {
 
-/// What a step of a vehicle costs, in steps of an LTD vehicle.
+/// Cost of a step of a vehicle, in steps of an LTD vehicle.
 constexpr long kCostOfBarrier = 1000;
 long CostOf(VehicleModel model) { return model == VehicleModel::kTwoD ? kCostOfBarrier / kMostLanes : 1; }
 

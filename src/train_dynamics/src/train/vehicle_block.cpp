@@ -78,7 +78,7 @@ std::string FaultOf(const LtdVehicle& /*vehicle*/, const Track& /*track*/, const
   return Describe("speed", s.v_mps, "m/s");
 }
 
-/// Names the first body that is not where a body can be.
+/// Names the first body whose position or speed is not possible.
 template <int kPerBogie>
 std::string FaultOf(const BogieVehicle<kPerBogie>& wagon, const Track& track, const WagonState<double, kPerBogie>& s) {
   const OverRail<double, kPerBogie> over = OverRailOf(wagon, track, s);
@@ -109,7 +109,7 @@ class EqualVehicles : public VehicleBatch<Vehicle> {
   using VehicleType = Vehicle;
   using VehicleBatch<Vehicle>::VehicleBatch;
 
-  /// As VehicleBatch::Advance, in the exchange that is asked for.
+  /// As VehicleBatch::Advance, in the requested exchange.
   bool Advance(const Track& track, const ExchangeRequest& request, const LoadPlaces& loads, const ReplyPlaces& reply,
                bool with_output) {
     return VehicleBatch<Vehicle>::Advance(track, request.dt_s, request.steps, loads, reply, with_output);
@@ -434,7 +434,7 @@ class BatchedBlock : public VehicleBlock {
   }
 
  private:
-  /// Those that are new.
+  /// The new ones.
   void TakePatches(const std::vector<FrictionPatchParams>& patches) {
     track_.AddPatches({patches.begin() + static_cast<std::ptrdiff_t>(patches_), patches.end()});
     patches_ = patches.size();

@@ -18,13 +18,13 @@ namespace train_node {
 ///   ...
 ///   parameters.ThrowIfWrong();  // when all have been read
 ///
-/// A value of a wrong type or out of its range is noted and the default is returned, so that all errors are told at
+/// A value of a wrong type or out of its range is noted and the default is returned, so that all errors are reported at
 /// once.
 class NodeParameters {
  public:
   /// Reads what the ROS master has under the node's name; needs ros::init, but no registration of the node.
   explicit NodeParameters(const std::string& node);
-  /// @param values  a struct of parameters by name; anything else stands for none
+  /// @param values  a struct of parameters by name; any other type counts as no parameters
   explicit NodeParameters(const XmlRpc::XmlRpcValue& values);
 
   bool Has(const std::string& name) const;
@@ -37,10 +37,10 @@ class NodeParameters {
   double NonNegative(const std::string& name, double fallback);
   /// Whether the parameter is the first of its two words, which is also its default.
   bool IsFirstOf(const std::string& name, const std::string& first, const std::string& second);
-  /// One of these words, of which the first is the default. Where `true` and `false` are among them, the values of that
-  /// type are, too.
+  /// One of these words, the first being the default. If `true` and `false` are among them, Boolean values are
+  /// accepted, too.
   std::string Choice(const std::string& name, const std::vector<std::string>& words);
-  /// All that are there, whether the node knows them or not.
+  /// All parameters that exist, known to the node or not.
   std::vector<std::string> Names() const;
   /// Notes an error of a parameter that its type does not show.
   void Complain(const std::string& name, const std::string& rule);
@@ -49,7 +49,7 @@ class NodeParameters {
   void ThrowIfWrong() const;
 
  private:
-  /// The value if it is there and of that type, or else null after noting the error.
+  /// The value if it exists and has that type, or else null after noting the error.
   const XmlRpc::XmlRpcValue* Find(const std::string& name, std::initializer_list<XmlRpc::XmlRpcValue::Type> types,
                                   const char* rule);
 

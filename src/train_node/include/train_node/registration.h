@@ -10,8 +10,8 @@
 
 namespace train_node {
 
-/// Keeps this node known to its ROS master. A ROS master that is restarted knows no node, and roscpp registers a topic
-/// or service only once: those who come later would never find them.
+/// Keeps this node known to its ROS master. A restarted ROS master knows no node, and roscpp registers a topic or
+/// service only once: nodes started later would never find them.
 ///
 /// Asks the ROS master every `period` whether it knows this node, and otherwise registers all its topics and services
 /// again. Connections that exist are left as they are.

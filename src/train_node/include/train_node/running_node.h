@@ -5,8 +5,8 @@
 
 namespace train_node {
 
-/// The process that has a node's name already, as the ROS master and the process itself tell it. A ROS master gives
-/// a name to the last node that asks and ends the one that had it, which would end a run; so a node looks first.
+/// A process that already has a node's name, as reported by the ROS master and the process itself. A ROS master gives a
+/// name to the last node that requests it and ends the one that had it, which would end a run; so a node checks first.
 struct RunningNode {
   enum class State {
     kNone,    ///< no node is registered, or the registered one does not exist any more (killed, its machine gone)
@@ -14,15 +14,15 @@ struct RunningNode {
     kAlive,
   };
   State state = State::kNone;
-  std::string host;   ///< where it runs, as it calls itself
-  std::string about;  ///< what it says of itself (service ~identify); empty: it has not said anything
+  std::string host;   ///< the machine's name, as the process reports it
+  std::string about;  ///< its description (service ~identify); empty: it has not given one
 };
 
-/// Name of the service std_srvs/Trigger that tells in its message what a node is doing and since when.
+/// Name of the service std_srvs/Trigger whose message says what a node is doing and since when.
 constexpr const char* kIdentifyService = "identify";
 
-/// Looks for the running node that has a name. Needs ros::init, but no registration of this process, and asks nothing
-/// but the ROS master and that node. A ROS master that is not there knows of none.
+/// Looks for the running node that has a name. Needs ros::init, but no registration of this process, and queries only
+/// the ROS master and that node. Without a ROS master there is none.
 ///
 /// @param node      full name of the node
 /// @param patience  for each answer of that node

@@ -12,7 +12,7 @@ namespace train_results {
 
 using train_dynamics::Bytes;
 
-/// A bag of which nothing can be told; what() says why.
+/// A bag that cannot be read; what() says why.
 class UnreadableBag : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -20,8 +20,8 @@ class UnreadableBag : public std::runtime_error {
 /// The messages of a bag (format 2.0, not compressed) that may be damaged, forged or cut off.
 ///
 /// Reads the file's records from front to back and needs no index, so that the bag of a killed recorder is readable
-/// up to its last whole message. Nothing is allocated that the file does not really hold. (rosbag::Bag follows the
-/// sizes and positions in a damaged bag to wherever they point.)
+/// up to its last whole message. Memory is allocated only for data that the file really holds. (rosbag::Bag trusts the
+/// sizes and positions in a damaged bag.)
 class BagFile {
  public:
   struct Place {

@@ -19,9 +19,9 @@ namespace train_results {
 
 /// Writes messages into a bag (format 2.0, not compressed), one after the other.
 ///
-/// Does for a file that only grows what rosbag::Bag does for any. That one seeks before every message and
-/// writes it in pieces, 25 system calls for a record of a train, and cannot be closed on a full disk. Here a
-/// message is serialised into the open chunk, which goes to the file in one piece once it has 768 KiB.
+/// Like rosbag::Bag, but for appending only. rosbag::Bag seeks before every message and writes it in pieces, with 25
+/// system calls for a record of a train, and cannot be closed on a full disk. Here a message is serialised into the
+/// open chunk, which is written in one piece once it has 768 KiB.
 ///
 /// The bag is called FILE.active until it is complete, so that FILE is always readable.
 class BagWriter {
@@ -29,9 +29,9 @@ class BagWriter {
   /// @throws std::system_error if the file cannot be made
   explicit BagWriter(const std::string& file);
   /// Prepares to continue the bag of a checkpoint, FILE or FILE.active. Only reads it; GoOn changes it.
-  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or not to the byte what it was then
+  /// @throws std::invalid_argument, SnapshotError if there is no such bag, or its bytes have changed since
   BagWriter(const std::string& file, const train_dynamics::Bytes& checkpoint);
-  /// Opens that bag and cuts off what came after the checkpoint; before that nothing can be written.
+  /// Opens that bag and truncates it to the checkpoint; nothing can be written before this call.
   /// @throws std::system_error
   void GoOn();
   ~BagWriter();
@@ -56,7 +56,7 @@ class BagWriter {
     if (chunk_.size() > kChunkThreshold) WriteChunk();
   }
 
-  /// The same of the message that it is a view of: see message_views.h.
+  /// The same for the message behind a view: see message_views.h.
   template <class View>
   void WriteView(int topic, ros::Time time, const View& view) {
     const std::uint32_t size = SerializedLength(view);
@@ -67,20 +67,20 @@ class BagWriter {
 
   int topics() const { return static_cast<int>(connections_.size()); }
 
-  /// Writes what has come so far. @return what a writer needs to go on behind it
+  /// Writes all messages so far. @return the state from which a writer can continue
   train_dynamics::Bytes Checkpoint();
-  /// Waits until what was written before is on the disk. May be called while another thread writes on.
+  /// Waits until all data written before is on the disk. May be called while another thread continues to write.
   /// @throws std::system_error
   void Sync() const;
 
-  /// Completes the bag and gives it its name. On a full disk it gets all whole chunks that fit; if not even those of
-  /// the last checkpoint do beside the index, it stays FILE.active without one.
-  /// @throws std::system_error if it lacks anything
+  /// Completes the bag and gives it its name. On a full disk it keeps all whole chunks that fit; if those of the last
+  /// checkpoint and the index do not fit, it stays FILE.active without an index.
+  /// @throws std::system_error if it is incomplete
   void Close();
 
  private:
   using Bytes = train_dynamics::Bytes;
-  /// Leaves the bytes that it grows by as they are: they are written at once.
+  /// Does not initialise new bytes, which are written at once.
   template <class T>
   struct Uninitialised : std::allocator<T> {
     template <class U>
@@ -128,7 +128,7 @@ class BagWriter {
   train_dynamics::StreamDigest digest_;  ///< of the file behind its header, up to the same
   std::vector<Connection> connections_;
   std::vector<Chunk> chunks_;    ///< in the file
-  std::size_t kept_chunks_ = 0;  ///< of these, that a checkpoint is of
+  std::size_t kept_chunks_ = 0;  ///< of these, the number that a checkpoint covers
   Chunk open_;
   Buffer chunk_;  ///< records of the open one
 };

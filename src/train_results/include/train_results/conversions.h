@@ -15,7 +15,7 @@
 #include "train_dynamics/train/train_master.h"
 #include "train_results/message_views.h"
 
-/// From records of the physics to messages. A message keeps its memory from record to record.
+/// Converts records of the physics to messages. A message keeps its memory from record to record.
 namespace train_results {
 
 void Convert(const train_dynamics::TrainRecord& record, train_brake_msgs::TrainState& message);
@@ -38,7 +38,7 @@ void Convert(const train_dynamics::GivenCommand& given, double time_s, train_bra
 void Convert(const train_dynamics::DriverView& view, train_brake_msgs::DriverView& message);
 
 /// A command for the start of an exchange, from a message.
-/// @throws std::invalid_argument if there is no such kind, or the number that belongs to it is missing
+/// @throws std::invalid_argument if the kind is unknown, or its number is missing
 train_dynamics::DriverCommand CommandOf(const train_brake_msgs::DriverCommand& message, std::uint64_t exchange);
 
 /// Topic of the commands that were given to the running train, in its namespace.
@@ -50,8 +50,8 @@ inline constexpr const char* kScenarioTopic = "scenario";
 /// "# train_brake VERSION": the first line of each scenario that this program writes.
 std::string VersionLine();
 
-/// The scenario with everything resolved, as YAML that runs again, behind VersionLine: what the viewer of a run or of a
-/// bag needs to know.
+/// The scenario with everything resolved, as YAML that can be run again, after VersionLine: for viewers of a run or of
+/// a bag.
 std_msgs::String ScenarioMessage(const train_dynamics::ScenarioParams& scenario);
 
 }  // namespace train_results

@@ -10,7 +10,7 @@
 
 namespace train_results {
 
-/// Writes a run as CSV tables into a folder; units stand in the headers.
+/// Writes a run as CSV tables into a folder, with units in the headers.
 ///
 ///   train_history.csv  mean, lead and tail speed, largest forces, mean pressure
 ///   pressures.csv      cylinder pressure of every vehicle; serves as a scenario's pressure_table
@@ -22,9 +22,9 @@ class CsvRecorder {
  public:
   explicit CsvRecorder(const std::filesystem::path& folder);
   /// Prepares to continue the tables of a checkpoint. Only reads them; GoOn changes them.
-  /// @throws std::invalid_argument, SnapshotError if they are not to the byte what they were
+  /// @throws std::invalid_argument, SnapshotError if their bytes have changed since
   CsvRecorder(const std::filesystem::path& folder, const train_dynamics::Bytes& checkpoint, int vehicles);
-  /// Opens those tables and cuts off what came after the checkpoint; before that nothing can be written.
+  /// Opens those tables and truncates them to the checkpoint; nothing can be written before this call.
   /// @throws std::filesystem::filesystem_error
   void GoOn();
   train_dynamics::Bytes Checkpoint();
@@ -32,7 +32,7 @@ class CsvRecorder {
   /// An observer of the run's TrainMaster. @throws std::runtime_error if a table could not be written
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Writes the tables of the end. @throws std::runtime_error if anything could not be written
+  /// Writes the tables that are made at the end. @throws std::runtime_error if one could not be written
   void Close();
 
  private:
@@ -40,7 +40,7 @@ class CsvRecorder {
   void CheckAll() const;
 
   std::filesystem::path folder_;
-  int vehicles_ = 0;  ///< of the train, once a record or a checkpoint told
+  int vehicles_ = 0;  ///< of the train, known from the first record or a checkpoint
   std::ofstream history_, pressures_;
   std::map<std::string, std::ofstream> brake_;  ///< by the name of the table
   std::map<int, std::ofstream> wagons_;

@@ -4,9 +4,9 @@
 
 namespace train_results {
 
-/// Keeps other runs out of a folder. The system ends it with the process, however that ends.
+/// Locks a folder against other runs. The system releases the lock when the process ends, however it ends.
 ///
-/// Where a file system knows no locks, there is none.
+/// On a file system without locks there is none.
 class FolderLock {
  public:
   /// @throws std::runtime_error if another run has it

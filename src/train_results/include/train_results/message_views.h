@@ -16,10 +16,10 @@
 #include "train_dynamics/brake/pneumatic/brake_record.h"
 #include "train_dynamics/vehicle/vehicle_record.h"
 
-/// Messages that are written straight from the numbers of a record, without being made first.
+/// Messages that are serialised directly from a record's numbers, without a message object.
 ///
 /// A view has the fields of its message, by name; an array of numbers is one of the record's, converted as it is
-/// written. The order of the fields is that of the message, whose serialiser writes the view: to its bytes.
+/// written. The order of the fields is that of the message, whose serialiser also writes the view, to the same bytes.
 namespace train_results {
 
 /// An array of a record as an array of a message with elements `To`.

@@ -9,7 +9,7 @@
 
 namespace train_results {
 
-/// Opens a file that a user has named for reading: no folder, pipe or device, which would never end.
+/// Opens a file that a user has named for reading: not a folder, pipe or device, which might never end.
 /// @throws std::invalid_argument that names the file and says what is wrong
 std::ifstream OpenPlainFile(const std::filesystem::path& file);
 
@@ -23,7 +23,7 @@ void AddToDigest(const std::filesystem::path& file, std::uint64_t from, std::uin
 /// Why a file could not be written, in words for users: "No space left on device", ... @param error  errno
 std::string WriteFailure(int error);
 
-/// Waits until what was written to a file is on the disk. @throws std::runtime_error
+/// Waits until all data written to a file is on the disk. @throws std::runtime_error
 void SyncFile(const std::filesystem::path& file);
 
 /// Writes a whole file or nothing; once it returns, the file survives a loss of power.

@@ -20,7 +20,7 @@ class RecordedTopic {
 
   const std::string& name() const { return topic_.name; }
   bool done() const { return next_ == topic_.messages.size(); }
-  /// Of the message that is next; there must be one.
+  /// The exchange of the next message; there must be one.
   std::uint64_t exchange() const { return exchange_; }
   const Bytes& message() const { return message_; }
   /// @throws UnreadableBag
@@ -36,8 +36,8 @@ class RecordedTopic {
   Bytes message_;
 };
 
-/// The program that wrote the scenario in a bag, "train_brake 0.2.0"; empty where the bag does not tell.
-/// Needs none of the other messages, whose definitions another version may have changed.
+/// The program that wrote the scenario in a bag, "train_brake 0.2.0"; empty if the bag does not have it. Does not read
+/// other messages, whose definitions another version may have changed.
 /// @throws UnreadableBag
 std::string WriterOf(const std::string& file);
 
@@ -53,7 +53,7 @@ class RecordedRun {
   /// The whole scenario as YAML, if the bag has it.
   std::optional<std::string> Scenario();
 
-  /// The commands that were given live, as those of their exchanges.
+  /// The commands that were given live, each bound to its exchange.
   /// @throws UnreadableBag if one of them is damaged
   std::vector<train_dynamics::DriverCommand> LiveCommands();
 

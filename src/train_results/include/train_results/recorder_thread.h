@@ -12,25 +12,25 @@
 
 namespace train_results {
 
-/// Lets a recorder work in a thread of its own, so that a run does not wait for its files.
+/// Runs a recorder in a thread of its own, so that a run does not wait for its files.
 ///
-/// Records are copied into a queue and recorded in their order, and what else is to be done between two of them is done
-/// there. When the queue is full, the run waits: nothing is lost. The thread wakes for several records at once, or
-/// after 0.1 s, because waking costs more than a record.
+/// Records are copied into a queue and recorded in order; tasks between two records are executed there, too. When the
+/// queue is full, the run waits: nothing is lost. The thread wakes for several records at once, or after 0.1 s, because
+/// waking costs more than a record.
 class RecorderThread {
  public:
   using Recorder = std::function<void(const train_dynamics::TrainRecord&)>;
 
   explicit RecorderThread(Recorder recorder);
-  /// Finishes; what is thrown then is lost.
+  /// Finishes; exceptions are discarded.
   ~RecorderThread();
 
   /// An observer of the run's TrainMaster. @throws what the recorder or a task threw before
   void Record(const train_dynamics::TrainRecord& record);
 
-  /// Has something done once all records so far are recorded, before the next one is. @throws as Record
+  /// Executes a task after all records so far have been recorded, and before the next one. @throws as Record
   void Do(std::function<void()> task);
-  /// Returns when all is recorded and done. @throws what the recorder or a task threw, and only once
+  /// Returns when all records and tasks are done. @throws what the recorder or a task threw, once
   void Finish();
 
  private:

@@ -12,7 +12,7 @@ struct ResultColumn {
   std::string meaning;
 };
 
-/// A CSV table of a run. What writes it takes its first line from here, and so does the reference.
+/// A CSV table of a run. Its writer and the reference take its first line from here.
 struct ResultTable {
   std::string file;  ///< with "NNN": a file for each vehicle that is recorded in detail
   std::string meaning;
@@ -36,7 +36,7 @@ ResultTable TrackWearTable();
 std::vector<ResultTable> ResultTables();
 
 /// What summary.json holds: "final_speed_kmh.mean" within a map, "stops[].time_s" in a list of maps, "dissipated_j.*"
-/// under names that the train decides.
+/// under names that depend on the train.
 const std::vector<ResultColumn>& SummaryFields();
 
 /// The other files of a run's folder: the name, and what it holds.

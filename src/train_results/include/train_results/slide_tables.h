@@ -6,9 +6,9 @@
 
 namespace train_results {
 
-/// Writes a run's tables of slides and of the work on the track into its folder; units stand in the headers.
+/// Writes a run's tables of slides and of the work on the track into its folder, with units in the headers.
 ///
-/// Those that would be empty are not written.
+/// Empty tables are not written.
 ///
 ///   slides.csv      one row per slide of a wheelset, as train_dynamics/vehicle/slide_event.h has it
 ///   track_wear.csv  one row per metre of track that a wheelset of the 2D model ran over

@@ -10,10 +10,10 @@ struct NoSummary : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// What a person wants to know of a run first, as lines: where it came to, largest forces, and what happened that
-/// should not (couplings that broke, slides, an early end).
+/// The main results of a run as lines of text: its end, largest forces, and irregular events (broken couplings, slides,
+/// an early end).
 ///
-/// @param summary_json  the contents of a summary.json; what an older one does not have is left out
+/// @param summary_json  the contents of a summary.json; values that an older one lacks are left out
 /// @throws NoSummary
 std::string SummaryText(const std::string& summary_json);
 

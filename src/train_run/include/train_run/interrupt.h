@@ -2,10 +2,10 @@
 
 namespace train_run {
 
-/// Makes Ctrl-C, SIGTERM and the end of a terminal ask for a clean end, once; a second one ends the process as usual.
+/// Makes the first Ctrl-C, SIGTERM or SIGHUP request a clean end; the second one ends the process as usual.
 void CatchInterrupts();
 
-/// The signal that asked for an end, 0 as long as none has.
+/// The signal that requested an end; 0: none so far.
 int Interrupt();
 
 }  // namespace train_run

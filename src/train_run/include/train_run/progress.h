@@ -4,8 +4,7 @@
 
 namespace train_run {
 
-/// Tells how far a run has come: a line that renews itself on a terminal, a few quiet lines elsewhere. Writes
-/// to stderr.
+/// Shows the progress of a run: a line that is updated on a terminal, a few lines elsewhere. Writes to stderr.
 class Progress {
  public:
   /// @param start_s  simulated time at which the run begins, later than 0 if it was resumed

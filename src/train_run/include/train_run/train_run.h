@@ -25,10 +25,9 @@ class WriteError : public std::runtime_error {
 struct RunHooks {
   /// Called before each exchange; true ends the run there.
   std::function<bool()> ends = [] { return false; };
-  /// Whether the next exchange may begin now. If not, it has waited a moment, and is asked again after `ends`.
+  /// Whether the next exchange may begin now. If not, it has waited a moment, and is called again after `ends`.
   std::function<bool()> admits = [] { return true; };
-  /// Called right before each exchange, those between an interruption and its checkpoint included: the place for
-  /// Command.
+  /// Called right before each exchange, also between an interruption and its checkpoint: the place to call Command.
   std::function<void()> begins = [] {};
   /// Called after each exchange, with its wall time [s], unless it is empty.
   std::function<void(double)> exchanged;
@@ -41,27 +40,27 @@ struct RunHooks {
 class TrainRun {
  public:
   /// Keeps references: all but the brake must outlive the run.
-  /// @param from    the checkpoint from which it goes on; null: it begins at time 0
+  /// @param from    the checkpoint from which it is resumed; null: it begins at time 0
   /// @param output  its results; null: none are written
   TrainRun(const train_dynamics::ScenarioParams& scenario, const train_dynamics::Consist& consist,
            train_dynamics::Transport& transport, train_dynamics::BrakeSystem brake,
            const train_dynamics::TrainCheckpoint* from = nullptr, train_results::RunOutput* output = nullptr);
 
-  /// Called for every record, after the summary and the results have got it.
+  /// Called for every record, after the summary and the results have received it.
   void AddObserver(train_dynamics::TrainMaster::Observer observer) { master_.AddObserver(std::move(observer)); }
 
-  /// Runs until the end, or until `hooks.ends`; then, where checkpoints are kept, on to the next record and to a
-  /// checkpoint there, for `patience` of wall time at most.
+  /// Runs until the end, or until `hooks.ends`; then, if checkpoints are kept, on to the next record with a checkpoint
+  /// there, for at most `patience` of wall time.
   ///
   /// A fault of the simulation or of the results ends the run and is kept (see fault, write_error); other exceptions,
-  /// of the transport, pass through. Finish comes after either.
+  /// of the transport, pass through. Call Finish in either case.
   void Go(const RunHooks& hooks, std::chrono::duration<double> patience = std::chrono::hours(24));
 
   /// Completes the results. @param fault  why the run ended, where it is not one that Go has kept
   /// @return the summary as JSON
   std::string Finish(double wall_s, const std::string& fault = "");
-  /// What the user should know of the run beside its summary, once it has ended: a route that was left, and, of a whole
-  /// run, commands that were never given.
+  /// Warnings for the user after the run: a route that was left, and, for a complete run, commands that were never
+  /// given.
   std::vector<std::string> Warnings() const;
 
   /// See TrainMaster::Command; between two exchanges.
@@ -76,9 +75,9 @@ class TrainRun {
   const train_dynamics::RunSummary& summary() const { return summary_; }
   /// See RunSummary::SetTwin.
   void SetTwin(train_dynamics::TwinRun twin) { summary_.SetTwin(std::move(twin)); }
-  /// When it begins [s]: later than 0 if it goes on from a checkpoint.
+  /// When it begins [s]: later than 0 if it is resumed from a checkpoint.
   double start_s() const;
-  /// Whether Go has reached an interruption, at which it goes on to a record.
+  /// Whether Go has been interrupted, and continues only to the next record.
   bool ending() const { return ending_; }
   /// Why the simulation broke down; empty: it did not.
   const std::string& fault() const { return fault_; }

@@ -17,8 +17,7 @@ int PrintAirTest(const std::string& scenario_file, const std::vector<std::string
 /// Prints the braked-weight percentage of a scenario's vehicles and how its train stops beside the model of ETCS:
 ///
 ///   1  one vehicle of the train's last group, alone, emergency from 100 and 120 km/h on level track: its stopping
-///   distance
-///      s [m] and lambda [%] by UIC 544-1 [M]: s = 61300 / (lambda + 8.9) and 83634 / (lambda + 8.8)
+///      distance s [m] and lambda [%] by UIC 544-1 [M]: s = 61300 / (lambda + 8.9) and 83634 / (lambda + 8.8)
 ///   2  the train, emergency from 100 km/h, beside ETCS's conversion model at that lambda (train/braked_weight.h)
 ///
 /// @return kSuccess; kFailure if the train's stop differs by more than 10 %

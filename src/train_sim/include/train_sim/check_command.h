@@ -16,8 +16,8 @@ struct CheckOptions {
   bool json = false;  ///< print one JSON object for programs, and nothing for people
 };
 
-/// Checks a scenario, prints what it is and what a run of it will take; what will not work well is a warning with its
-/// place and a remedy.
+/// Checks a scenario, prints its contents and the effort of a run; a doubtful setting is a warning with its place and a
+/// remedy.
 /// @throws strict_config::Error
 int CheckScenario(const CheckOptions& options);
 

@@ -8,7 +8,7 @@
 
 namespace train_sim {
 
-/// A value of a key that stands in a file.
+/// A value of a key, taken from a file.
 struct KeyExample {
   std::string value;  ///< as YAML
   std::string file;   ///< "vehicles/ore_wagon.yaml"; empty: no shipped file has it

@@ -12,10 +12,10 @@ struct KeysOptions {
   std::string schema_kind;  ///< print the JSON schema of this kind of file; empty: none
 };
 
-/// Prints the page of what a run leaves: its files, the columns of its tables, the numbers of summary.json.
+/// Prints the page on the results of a run: its files, the columns of its tables, the numbers of summary.json.
 void PrintResultFiles();
 
-/// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists by which they are
+/// Prints the keys of configuration files: unit, rule, default, meaning, example, from the lists with which they are
 /// read.
 ///
 /// Examples are looked for in the folders of TRAIN_BRAKE_CONFIG.

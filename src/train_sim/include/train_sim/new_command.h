@@ -4,10 +4,10 @@
 
 namespace train_sim {
 
-/// Writes a folder of one's own that runs at once: a train, a route, a scenario, a launch file, a README.
+/// Writes a folder that the user owns and can run at once: a train, a route, a scenario, a launch file, a README.
 ///
-/// Nothing that exists is changed: a folder with anything in it is refused.
-/// @throws std::invalid_argument where the folder cannot be taken or written
+/// Nothing that exists is changed: a folder that is not empty is refused.
+/// @throws std::invalid_argument if the folder is not empty or cannot be written
 int StartFolder(const std::string& folder);
 
 }  // namespace train_sim

@@ -12,8 +12,8 @@ struct RouteOptions {
   std::string csv;                     ///< file to write it to as a table of points; empty: none
 };
 
-/// Checks a route, prints what it is, draws it and writes it as a table. What is allowed but most likely a slip of the
-/// pen (a grade that no railway has, a curve that is shorter than a vehicle) is a warning.
+/// Checks a route, describes it, draws it and writes it as a table. An allowed but implausible entry (a grade that no
+/// railway has, a curve that is shorter than a vehicle) is a warning.
 /// @throws strict_config::Error
 int ShowRoute(const RouteOptions& options);
 

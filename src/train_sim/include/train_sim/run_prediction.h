@@ -6,7 +6,7 @@
 
 namespace train_sim {
 
-/// What a run in one process will take on this machine.
+/// Time and memory that a run in one process needs on this machine.
 struct RunPrediction {
   double exchange_s = 0.0;    ///< wall time of an exchange
   double wall_s = 0.0;        ///< of the whole run
@@ -15,11 +15,11 @@ struct RunPrediction {
   std::string fault;  ///< what ended the trial early, if anything did
 };
 
-/// Tries a run out: a few hundred exchanges from its start state, under the pressures of the middle of the run. The bag
-/// is not written, but reckoned from the sizes of the messages of the first record.
+/// Makes a trial run: a few hundred exchanges from its start state, under the pressures of the middle of the run. The
+/// bag is not written; its size is estimated from the messages of the first record.
 RunPrediction PredictRun(const train_dynamics::config::LoadedScenario& scenario, int threads);
 
-/// What a train shared out over wagon nodes exchanges, by Step.srv, over TCP.
+/// The traffic of a train distributed over wagon nodes: Step.srv over TCP.
 struct TrafficPrediction {
   double calls_per_s = 0.0;  ///< of simulated time, each a request and a reply
   double bytes_to_nodes_per_s = 0.0, bytes_from_nodes_per_s = 0.0;

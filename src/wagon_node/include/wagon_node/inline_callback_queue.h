@@ -4,7 +4,7 @@
 
 namespace wagon_node {
 
-/// A queue that is no queue: a callback is run at once, in the thread of roscpp that found it due.
+/// A callback queue without a queue: a callback runs at once, in the thread of roscpp that added it.
 ///
 /// This saves a thread that spins a queue. While a callback runs, nothing else of the node's network is served.
 class InlineCallbackQueue : public ros::CallbackQueueInterface {

@@ -14,7 +14,7 @@ namespace wagon_node {
 class SharedSlot {
  public:
   /// Takes the offer of a request.
-  /// @throws std::exception if there is none, or this process cannot
+  /// @throws std::exception if there is no offer, or this process cannot use it
   explicit SharedSlot(const train_brake_msgs::ConfigureRequest& offer);
 
   /// Waits for a call. @return whether there is one

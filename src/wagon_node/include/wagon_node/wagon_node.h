@@ -28,11 +28,11 @@ struct WagonOptions {
   double master_timeout_s = 8.0;  ///< leave after so long without a master; 0: never
   bool shared_memory = true;      ///< share memory with a master on the same machine
 
-  /// @throws std::invalid_argument naming all parameters that are wrong or not known
+  /// @throws std::invalid_argument if parameters are wrong or unknown; names all of them
   static WagonOptions FromParameters(train_node::NodeParameters& parameters);
 };
 
-/// A process of the distributed train. Which vehicles it hosts, it learns from the train's master.
+/// A process of the distributed train. The train's master assigns its vehicles.
 ///
 ///   services    ~configure, ~step   see Configure.srv, Step.srv
 ///   publishes   wagon_NNN/state     its vehicles in full detail, at every record; in the node's namespace
@@ -41,10 +41,9 @@ struct WagonOptions {
 /// Calls of ~step come by TCP or, if the master is on the same machine, through memory that it shares: those are
 /// served by the thread that called Run().
 ///
-/// A master is there as long as the connection over which it configured this node is open, which costs
-/// nothing to watch and also holds for a master that is paused, stopped in a debugger or slow. A node that
-/// has not been configured goes by the ROS master instead. A request that is not refused counts as a sign of
-/// life, too.
+/// The master counts as present while the connection over which it configured this node is open. This costs nothing to
+/// monitor, and also holds for a master that is paused, stopped in a debugger or slow. A node that has not been
+/// configured checks the ROS master instead. An accepted request is a sign of life, too.
 class WagonNode {
  public:
   explicit WagonNode(const WagonOptions& options);

@@ -9,8 +9,8 @@
 
 namespace wagon_node {
 
-/// What a wagon node does with the requests of Configure.srv and Step.srv: checks all of them, lets its
-/// vehicles move, keeps the last reply. Knows the messages, but neither sockets nor nodes.
+/// Handles the requests of Configure.srv and Step.srv in a wagon node: checks each, moves the vehicles, keeps the last
+/// reply. Depends on the messages, but not on sockets or nodes.
 ///
 ///   request     | no run yet     | run A, whose next exchange is k           | from another run
 ///   ------------+----------------+-------------------------------------------+-------------------------------
@@ -22,8 +22,8 @@ namespace wagon_node {
 ///   other Step  | refused        | refused, with both numbers                | refused
 ///
 /// A refusal is a reply with ok = false and a message for people; it leaves the run and its vehicles as they
-/// are; it does not tell the run's id, which only its master shall know. What else is refused, and in which
-/// order, is in the services' comments.
+/// are; it does not disclose the run's id, which only its master shall know. The services' comments list what else is
+/// refused, and in which order.
 class WagonServer {
  public:
   /// @param threads  that share the vehicles; any number gives the same bits

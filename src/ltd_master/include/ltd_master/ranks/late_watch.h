@@ -10,7 +10,7 @@
 
 namespace ltd_master {
 
-/// A rank that did not come up, died, was late, refused a request or replied nonsense. The run cannot go on.
+/// A rank did not start, died, was late, refused a request or sent an invalid reply. The run cannot continue.
 ///
 /// what() names the rank, its vehicles and the exchange.
 class RankFailure : public std::runtime_error {
@@ -20,14 +20,13 @@ class RankFailure : public std::runtime_error {
   RankFailure(const train_dynamics::Rank& rank, const std::string& when, const std::string& what);
 };
 
-/// The connection to a rank broke, or it is late beyond the deadline: another process may take its place.
+/// The connection to a rank broke, or the deadline has passed: another process may take its place.
 class RankLost : public RankFailure {
  public:
   using RankFailure::RankFailure;
 };
 
-/// A rank that is given up: its connection broke, it replied what cannot be read, or it is late beyond the
-/// deadline.
+/// A rank that is given up: its connection broke, its reply cannot be read, or the deadline has passed.
 struct LostRank {
   int rank;         ///< index
   std::string why;  ///< "closed the connection"
@@ -36,7 +35,7 @@ struct LostRank {
 /// The chosen ranks with their vehicles, the first few of them: "/train/wagon_007 (vehicles 7-12), ...".
 std::string NamesOf(const std::vector<train_dynamics::Rank>& ranks, const std::vector<bool>& chosen);
 
-/// Patience with ranks: warns when a wait takes 1, 3 and 10 s, naming those who are late, and knows the
+/// Patience with ranks: warns when a wait takes 1, 3 and 10 s, with the names of the late ranks, and keeps the
 /// deadline.
 class LateWatch {
  public:
@@ -46,16 +45,17 @@ class LateWatch {
   LateWatch(const std::vector<train_dynamics::Rank>& ranks, std::string when, double deadline_s,
             const std::function<bool()>& interrupted);
 
-  /// For how long to wait before the time is checked [s].
+  /// Longest wait between two checks of the time [s].
   static constexpr double kCheckPeriod = Patience::kCheckPeriod;
 
   /// Looks at the watch.
-  /// @param pending  [rank] whether it is still waited for
-  /// @return whether it is in time; false: the deadline has passed, and those ranks are lost for NoReply()
+  /// @param pending  [rank] whether its reply is pending
+  /// @return true before the deadline; false: it has passed, and those ranks are lost, because of NoReply()
   /// @throws WaitInterrupted
   bool Look(const std::vector<bool>& pending);
 
-  /// Ranks are lost for good: gives an interruption, which may have hit them first, a second to come in.
+  /// Ends the run because ranks are lost. Waits a second first: an interruption may have ended them, and arrive here
+  /// later.
   /// @throws WaitInterrupted, RankFailure
   [[noreturn]] void GiveUp(const std::vector<LostRank>& lost) const;
 

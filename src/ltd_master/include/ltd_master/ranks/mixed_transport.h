@@ -9,8 +9,8 @@
 
 namespace ltd_master {
 
-/// A train with external vehicles: one transport has the vehicles of this program, the other one those of others. They
-/// are asked one after the other.
+/// A train with external vehicles: one transport has the vehicles of this program, the other one the external ones.
+/// They are called one after the other.
 class MixedTransport : public train_dynamics::Transport {
  public:
   MixedTransport(std::unique_ptr<train_dynamics::Transport> built_in,

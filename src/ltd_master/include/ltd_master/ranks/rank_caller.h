@@ -13,23 +13,23 @@
 
 namespace ltd_master {
 
-/// What came of a call of all ranks.
+/// The outcome of a call of all ranks.
 struct CallOutcome {
   int last_rank = 0;           ///< index of the rank that replied last
-  std::vector<LostRank> lost;  ///< those whose responses mean nothing; they are disconnected
+  std::vector<LostRank> lost;  ///< ranks without a valid response; they are disconnected
 };
 
 /// Calls the same service of all ranks side by side.
 ///
-/// A rank that is lost is disconnected for good: whatever it may still send goes nowhere. Connect() then finds
-/// the process that has taken its name since.
+/// A lost rank is disconnected permanently, and later data from it is discarded. Connect() then finds the process that
+/// has taken its name since.
 class RankCaller {
  public:
   virtual ~RankCaller() = default;
 
   /// Tries to connect to a rank's services, unless it is connected.
   /// @return why it cannot be reached yet; empty: it is connected
-  /// @throws RankFailure if it can be reached, but speaks otherwise
+  /// @throws RankFailure if it can be reached, but has another protocol
   virtual std::string Connect(int rank) = 0;
   virtual void Disconnect(int rank) = 0;
 
@@ -48,8 +48,8 @@ class RankCaller {
 /// Why a rank cannot be looked up: "has not advertised", or the ROS master is not there.
 std::string WhyNotFound();
 
-/// One thread, which speaks TCPROS with all ranks: requests go out before any reply is waited for. Calls of Step
-/// to ranks on this machine go through memory that they share with this process, if they can.
+/// One thread that handles TCPROS with all ranks: all requests are sent before it waits for a reply. Calls of Step to
+/// ranks on this machine go through memory that they share with this process, if they can.
 /// @param run_id  of the run that the memory is for; 0: share none
 std::unique_ptr<RankCaller> MakeAsynchronousCaller(const std::vector<train_dynamics::Rank>& ranks,
                                                    std::uint64_t run_id);

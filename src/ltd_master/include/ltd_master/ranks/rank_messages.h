@@ -13,12 +13,12 @@
 
 namespace ltd_master {
 
-/// When something went wrong, as messages name it.
+/// The time of a failure, as messages name it.
 inline constexpr const char* kConfiguration = "configuration";
 std::string ExchangeText(std::uint64_t exchange);
 
-/// The requests to and the replies from all ranks, and how the arrays of the whole train go into them and
-/// come out. Replies are checked: what does not fit is thrown as a RankFailure.
+/// The requests to and the replies from all ranks, and the conversion of the whole train's arrays to and from them.
+/// Replies are checked: RankFailure is thrown for one that does not fit.
 class RankMessages {
  public:
   RankMessages(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id,
@@ -27,8 +27,8 @@ class RankMessages {
   std::vector<train_brake_msgs::Configure> configure;  ///< [rank]
   std::vector<train_brake_msgs::Step> step;            ///< [rank]
 
-  /// Where `configure` begins. @param snapshot  [vehicle]; empty: time 0
-  /// @throws SnapshotError if it is not one of so many vehicles
+  /// Sets the state at which `configure` begins. @param snapshot  [vehicle]; empty: time 0
+  /// @throws SnapshotError if it does not have one entry per vehicle
   void BeginAt(std::uint64_t exchange, const std::vector<train_dynamics::StateRow>& snapshot);
   void Unpack(train_dynamics::ExchangeReply& reply);  ///< the replies of `configure`
   /// Whether a rank answers with snapshots; known once its reply to `configure` has been unpacked.

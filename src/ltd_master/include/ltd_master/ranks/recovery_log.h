@@ -7,12 +7,12 @@
 
 namespace ltd_master {
 
-/// What it takes to bring a lost rank back: its vehicles' last snapshot, and what has acted on the train since.
+/// The data to restore a lost rank: its vehicles' last snapshot, and the loads on the train since.
 class RecoveryLog {
  public:
   using Snapshot = std::vector<std::uint8_t>;  ///< empty: time 0
 
-  /// Begins anew at an exchange. @param snapshots  [rank]
+  /// Restarts the log at an exchange. @param snapshots  [rank]
   void Begin(std::uint64_t exchange, std::vector<Snapshot> snapshots);
 
   /// Keeps the inputs of the next exchange.
@@ -22,7 +22,7 @@ class RecoveryLog {
   const Snapshot& snapshot(int rank) const { return snapshots_[rank]; }
   std::uint64_t size() const { return size_; }  ///< exchanges since
   /// The inputs of exchange() + i, into a request whose arrays have their sizes, the same for all exchanges; no record
-  /// is asked for. Of the request's friction patches those stay that it had.
+  /// is asked for. The request keeps the friction patches that it had at that exchange.
   void Get(std::uint64_t i, train_dynamics::ExchangeRequest& request) const;
 
  private:

@@ -21,47 +21,47 @@ class RankCaller;
 class RankMessages;
 
 struct RosTransportOptions {
-  double start_timeout_s = 60.0;            ///< for all ranks to come up, and to be configured; 0: for ever
-  double exchange_deadline_s = 30.0;        ///< for all replies of an exchange; 0: for ever
+  double start_timeout_s = 60.0;            ///< for all ranks to start and to be configured; 0: no limit
+  double exchange_deadline_s = 30.0;        ///< for all replies of an exchange; 0: no limit
   bool recover = true;                      ///< bring lost ranks back; false: the run ends with them
-  double recovery_timeout_s = 60.0;         ///< for each lost rank, one after the other, to come back; 0: for ever
+  double recovery_timeout_s = 60.0;         ///< for each lost rank, one after the other; 0: no limit
   std::uint64_t snapshot_exchanges = 1000;  ///< from one snapshot of the vehicles to the next
   bool shared_memory = true;                ///< with ranks on the same machine; only asynchronous
-  std::function<bool()> interrupted = [] { return false; };  ///< asked ten times a second while waiting
+  std::function<bool()> interrupted = [] { return false; };  ///< polled ten times a second while waiting
 };
 
 /// How the last exchange went, in wall time.
 struct ExchangeTiming {
   double wall_s = 0.0;    ///< from the packing of the first request to the unpacking of the last reply
   int last_rank = 0;      ///< index of the rank that replied last
-  bool was_late = false;  ///< it took so long that those who were late have been named
+  bool was_late = false;  ///< a warning named the late ranks
 };
 
 /// Ranks that are wagon_node processes: the master's end of Configure.srv and Step.srv.
 ///
-/// Start     waits until every rank has advertised its services (names who is missing, every 5 s), then
+/// Start     waits until every rank has advertised its services (names the missing ones every 5 s), then
 ///           configures all of them side by side.
 /// Exchange  sends every rank its request before it waits for any, and returns when all have replied.
 ///
-/// A rank that is late in either is named after 1, 3 and 10 s, and lost at the deadline. A rank is lost, too, when
-/// its connection breaks or its reply cannot be read. A lost rank is brought back, while the others wait:
+/// A rank that is late in either is named after 1, 3 and 10 s, and counts as lost at the deadline, or when its
+/// connection breaks or its reply cannot be read. A lost rank is restored while the others wait:
 ///
-///   1. wait until a node of its name answers: respawned, started by hand anywhere, or the same one, awake again
+///   1. wait until a node of its name answers: respawned, started by hand anywhere, or the same one running again
 ///   2. Configure it with the last snapshot of its vehicles
 ///   3. Step it again through the exchanges since: the same bits, because a rank's motion depends on nothing else
 ///
-/// A node that refuses one of these, or is lost in it, is not taken, and the next one is waited for.
+/// A node that refuses one of these, or is lost in it, is rejected; the next one is waited for.
 ///
-/// A rank that gives no snapshots cannot be brought back: the run ends with it.
+/// A rank that gives no snapshots cannot be restored: its loss ends the run.
 ///
 /// Both throw RankFailure (no recovery wanted, or recovery failed; a refusal; a reply that makes no sense) and
-/// WaitInterrupted; afterwards the transport is of no more use.
+/// WaitInterrupted; afterwards the transport cannot be used.
 ///
-/// The connections last as long as the transport. Their end tells the wagon nodes that the run is over.
+/// The connections last as long as the transport. Wagon nodes take their end as the end of the run.
 class RosTransport : public train_dynamics::Transport {
  public:
   /// @param ranks   their names are resolved in this node's namespace
-  /// @param run_id  unlike that of any other run; not 0
+  /// @param run_id  unique to this run; not 0
   RosTransport(std::vector<train_dynamics::Rank> ranks, std::uint64_t run_id,
                const train_dynamics::ScenarioParams& scenario, RosTransportOptions options);
   ~RosTransport() override;
@@ -81,7 +81,7 @@ class RosTransport : public train_dynamics::Transport {
   using Clock = std::chrono::steady_clock;
 
   void WaitForRanks();
-  /// Brings back those that were lost in a call. @param catch_up  what a node in a lost one's place has to do
+  /// Restores the ranks that were lost in a call. @param catch_up what a replacement node has to do
   void Recover(const std::vector<LostRank>& lost, const LateWatch& watch,
                const std::function<void(int rank)>& catch_up);
   /// Tries nodes of a lost rank's name until one of them has caught up.

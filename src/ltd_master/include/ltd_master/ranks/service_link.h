@@ -16,12 +16,12 @@ class LinkError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The other side does not want the connection: its service has another definition, for one.
+/// The other side refuses the connection, for instance because its service has another definition.
 class LinkRefused : public LinkError {
   using LinkError::LinkError;
 };
 
-/// A persistent connection to the service of another node, which never blocks: TCPROS without threads.
+/// A persistent, non-blocking connection to the service of another node: TCPROS without threads.
 ///
 ///   once      each side: uint32 length, then key=value fields, each with its uint32 length
 ///   per call  there: uint32 length, request; back: uint8 ok, uint32 length, response or error text
@@ -67,7 +67,7 @@ class ServiceLink {
   /// @return whether the rest of the request can be written, or else a reply can be read, within that time
   bool Wait(double timeout_s) const;
 
-  /// Outside a call nothing comes. @throws LinkError if something does, such as the end of the connection
+  /// Checks that nothing arrives outside a call. @throws LinkError if something does, such as the end of the connection
   void ExpectSilence() const;
 
  private:

@@ -17,23 +17,23 @@ namespace ltd_master {
 
 /// The master's end of train_brake_msgs/exchange_memory.h: calls of Step to ranks on the same machine.
 ///
-/// Ranks that share cores sleep between two calls, or yield to others some times first: whichever takes less time
-///  on this machine, beside what else it does (train/faster_way.h).
+/// Ranks that share cores sleep between two calls, or first yield some times, whichever is faster under the present
+/// load (train/faster_way.h).
 ///
-/// Whether a rank is on the same machine, only that rank can tell: it is offered a slot when it is configured,
-/// and either takes it or not.
+/// Only the rank itself can find out whether it is on the same machine: it is offered a slot when it is configured, and
+/// accepts or declines it.
 class SharedSlots {
  public:
-  /// Slots for all ranks, and some for processes that replace those of lost ranks.
+  /// Makes slots for all ranks, and spare ones for processes that replace lost ranks.
   /// @throws std::exception if the system has no such memory
   SharedSlots(const std::vector<train_dynamics::Rank>& ranks, std::uint64_t run_id);
   ~SharedSlots();
   SharedSlots(const SharedSlots&) = delete;
   SharedSlots& operator=(const SharedSlots&) = delete;
 
-  /// Puts an offer into a request: the rank's slot, a new one for a new process. Without a slot left, none.
+  /// Puts an offer into a request: the rank's slot, a new one for a new process; none if no slot is left.
   void Offer(int rank, train_brake_msgs::ConfigureRequest& request);
-  /// What the rank made of it.
+  /// Takes the rank's answer to the offer.
   void Settle(int rank, const train_brake_msgs::ConfigureResponse& response);
   /// The rank's process is given up, and its slot with it.
   void Drop(int rank);
@@ -41,7 +41,7 @@ class SharedSlots {
 
   /// Begins a call: writes the requests of all ranks that have slots, and wakes those ranks.
   void Send(const std::vector<train_brake_msgs::Step>& calls);
-  /// Waits until all have replied, perhaps: Read() tells. At most for that time.
+  /// Waits for replies, at most for that time; it may return early. Read() shows which have arrived.
   void Wait(double timeout_s);
   enum class Reply { kNone, kRead, kTooLarge };
   /// @throws std::exception if the reply cannot be read

@@ -31,7 +31,7 @@ def _built_up(time_s: numpy.ndarray, mean: numpy.ndarray) -> str:
 
 
 def _charged(time_s: numpy.ndarray, head_pa: numpy.ndarray, tail_pa: numpy.ndarray) -> str:
-    """How long the charging of an empty train takes; nothing of a train that is charged from the start."""
+    """The charging time of an empty train; empty for a train that is charged from the start."""
     goal = FULL * float(head_pa.max())
     if tail_pa[0] >= goal or tail_pa[0] > tail_pa[1:].min(initial=numpy.inf):
         return ""
@@ -81,9 +81,8 @@ def draw(group: Group) -> Figure:
     style.mark_commands(below, group.commands())
     if len(with_cylinders) > 1:
         below.legend()
-    caption = f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all cylinders, " "to which the brake force is proportional. Build-up: " + "; ".join(
-        told
-    ) + "." + _charged(
-        table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1]
-    )
+    caption = (
+        f"Above: pressures in pipe and reservoirs of {run.label}, above the atmosphere. Below: the mean of all "
+        f"cylinders, to which the brake force is proportional. Build-up: {'; '.join(told)}."
+    ) + _charged(table.time_s, table["pipe_pressure_pa"][:, 0], table["pipe_pressure_pa"][:, -1])
     return Figure("air_brake", "Air in the brake", caption + not_shown, canvas)

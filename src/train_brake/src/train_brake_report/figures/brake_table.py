@@ -1,4 +1,5 @@
-"""Cylinder pressure and wave speed over the reduction of the brake pipe (the paper's Figure 1), of the run's own brake."""
+"""Cylinder pressure and wave speed over the reduction of the brake pipe (the paper's Figure 1), of the run's own
+brake."""
 
 import numpy
 
@@ -34,7 +35,8 @@ def draw(group: Group) -> Figure:
     below.set_xlabel("total reduction of the brake pipe [kPa]")
     style.legend_above(above)
     caption = (
-        f"The brake {brake.get('name', '')}: steady cylinder pressure and speed of the brake wave over the total reduction. "
+        f"The brake {brake.get('name', '')}: steady cylinder pressure and speed of the brake wave over the total "
+        f"reduction. "
         "The paper's Figure 1 prints curves and no numbers; points were read from it, between them the model takes a "
         f"monotone cubic. The thin line is a valve of 2.5 : 1.{not_shown}"
     )

@@ -41,7 +41,8 @@ def table(group: Group) -> Figure:
             rows.append([path, *values])
     more = f" The first {MOST_ROWS} of {len(rows)} keys." if len(rows) > MOST_ROWS else ""
     caption = (
-        "Keys that are not the same in all runs, with everything resolved, as --set takes them; \u2013: the run has no such key."
+        "Keys that are not the same in all runs, with everything resolved, as --set takes them; \u2013: the run has no "
+        "such key."
         if rows
         else "Nothing: the configurations are the same but for their names."
     )

@@ -119,7 +119,8 @@ def _beside_the_paper(scenario: str, axes) -> str:
         color=style.MUTED,
     )
     return (
-        f" The paper finds the 2D train up to {paper.LARGEST_DIFFERENCE_KN:g} kN lower at coupler {paper.COUPLER} (grey: "
+        f" The paper finds the 2D train up to {paper.LARGEST_DIFFERENCE_KN:g} kN lower at coupler {paper.COUPLER} "
+        f"(grey: "
         "by more than 200 kN). That was NOT found here; docs/validation.md says what would make such a difference."
     )
 

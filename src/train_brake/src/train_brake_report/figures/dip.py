@@ -73,7 +73,8 @@ def draw(group: Group) -> Figure:
     caption = (
         f"Dip of {1e3 * dip['depth_m']:g} mm on {dip['length_m']:g} m at {run.config['initial_speed_kmh']:g} km/h. "
         f"The wheel's force goes from {force_kn.min():.1f} to {force_kn.max():.1f} kN, {force_kn[0]:.1f} before; the "
-        f"frame pitches by {minus(f'{frame.min():.2f}')} ... {minus(f'{frame.max():+.2f}')} mrad, where a rigid frame on the rail's shape "
+        f"frame pitches by {minus(f'{frame.min():.2f}')} ... {minus(f'{frame.max():+.2f}')} mrad, where a rigid frame "
+        f"on the rail's shape "
         f"would by ±{geometric:.2f}. The paper prints no numbers of it."
     )
     return Figure("dip", "A wagon over the dip", caption, canvas)

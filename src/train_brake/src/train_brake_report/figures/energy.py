@@ -1,4 +1,4 @@
-"""Where the train's energy goes: the ledger over time, and what it does not account for."""
+"""The train's energy: the ledger over time, and its residual."""
 
 import numpy
 
@@ -34,8 +34,8 @@ def _why_not(run: Run) -> str:
 
 
 def turned_over_j(run: Run) -> float:
-    """What the residual is measured by, as residual_share of summary.json: the largest of what was dissipated, what the
-    stored energy changed by, and the work of gravity and traction, at the last ledger."""
+    """The reference of the residual, as for residual_share in summary.json: the largest of energy dissipated, change of
+    stored energy, and work of gravity and traction, at the last ledger."""
     last = run.recording.ledger[-1]
     stored = last.kinetic_j + last.potential_j - last.initial_j
     return max(abs(sum(last.dissipated_j)), abs(stored), abs(last.gravity_work_j) + abs(last.traction_work_j))
@@ -84,9 +84,11 @@ def draw(group: Group) -> Figure:
         axes.margins(x=0)
         style.mark_commands(axes, group.commands(), named=axes is stack)
     caption = (
-        "Top: kinetic energy, what has turned into heat and, where it shows, what springs and heights store. Middle: what "
+        "Top: kinetic energy, what has turned into heat and, where it shows, what springs and heights store. Middle: "
+        "what "
         "each element has taken up since the start, on a "
-        "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value per "
+        "logarithmic scale. Bottom: what the ledger does not account for, the error of the time integration. One value "
+        "per "
         f"{numpy.median(numpy.diff(time_s)):g} s."
     )
     if len(group.runs) > 1:

@@ -169,7 +169,7 @@ def _draw_route(panels: dict, track: Track, begin_m: float, end_m: float) -> Non
 
 
 def braking_distance_m(run: Run) -> list:
-    """[(stop's time, way from the first pressure in any cylinder to the stop)] of each stop of the summary."""
+    """[(stop's time, distance from the first pressure in any cylinder to the stop)] of each stop of the summary."""
     found = []
     pressures, state = run.recording.pressures, run.recording.state
     if pressures is None or state is None:
@@ -198,7 +198,7 @@ def _percentiles(run: Run) -> dict:
 
 
 def _quantities(run: Run) -> list:
-    """[(quantity, value with its unit)]: what an engineer asks of a run."""
+    """[(quantity, value with its unit)]: the main results for an engineer."""
     rows = []
     state, energy = run.recording.state, (run.summary or {}).get("energy", {})
     if state is not None:

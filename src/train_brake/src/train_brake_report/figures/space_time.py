@@ -34,8 +34,8 @@ class Quantity:
     caption: str = ""
 
     def of(self, run: Run) -> Tuple[numpy.ndarray, numpy.ndarray]:
-        """(times [s], values [record, vehicle] in the unit) without records that do not know it: in LTD none knows
-        creepage, and the first record of any model knows no acceleration."""
+        """(times [s], values [record, vehicle] in the unit) without records that lack it: LTD has no creepage, and the
+        first record of any model has no acceleration."""
         table = getattr(run.recording, self.table)
         values = numpy.float32(self.factor) * table[self.field]
         known = numpy.isfinite(values).all(axis=1)
@@ -380,7 +380,8 @@ def draw_wave(group: Group) -> Figure:
             + (f"it starts at {starts}. " if starts else "where it starts was not recorded. ")
         )
     caption += (
-        f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, the "
+        f"Besides the scatter there is a systematic error of about {100 * wave.SYSTEMATIC:g} %: the rise is curved, "
+        f"the "
         "line through its beginning is not. Lines: the fit. Right: how far each vehicle is from it."
     )
     if len(group.runs) > 1:

@@ -73,7 +73,8 @@ def mode_table(vehicle_file: str, train_sim: List[str]) -> Figure:
     return Figure(
         "modes",
         "Modes of vibration",
-        f"{told['vehicle']}: {told['mass_kg']:.1f} kg, linearised about its static equilibrium, wedges without friction. "
+        f"{told['vehicle']}: {told['mass_kg']:.1f} kg, linearised about its static equilibrium, wedges without "
+        f"friction. "
         f"Largest stable explicit step: {1e3 * told['largest_stable_step_s']:.3f} ms.",
         table=Table(
             ["mode", "frequency [Hz]", "damping [%]", "largest shares of the kinetic energy"],

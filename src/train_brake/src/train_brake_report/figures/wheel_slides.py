@@ -116,7 +116,8 @@ def draw_slides(group: Group) -> Figure:
         rows,
     )
     caption = (
-        f"{run.label}: {len(slides['vehicle'])} slide(s) of {len(wheelsets)} wheelset(s): creepage above 0.3 for at least "
+        f"{run.label}: {len(slides['vehicle'])} slide(s) of {len(wheelsets)} wheelset(s): creepage above 0.3 for at "
+        f"least "
         "0.2 s, above 3 km/h"
         + (f"; the {MOST_ROWS} with the most energy are drawn" if len(wheelsets) > MOST_ROWS else "")
         + ". Of each slide its longest lock is marked. "
@@ -149,8 +150,10 @@ def draw_wear(group: Group) -> Figure:
     wear = _columns(runs[0].track_wear_file, OF_WEAR)
     worst = int(wear["creep_j"].argmax())
     caption = (
-        f"Of all wheelsets that ran over each metre, both wheels: energy lost in creep (wear of wheel and rail), and work "
-        f"of the braking force on the rail. {runs[0].label}: {KJ * wear['creep_j'].sum():.0f} kJ in creep in all; most, "
+        f"Of all wheelsets that ran over each metre, both wheels: energy lost in creep (wear of wheel and rail), and "
+        f"work "
+        f"of the braking force on the rail. {runs[0].label}: {KJ * wear['creep_j'].sum():.0f} kJ in creep in all; "
+        f"most, "
         f"{KJ * wear['creep_j'][worst]:.2f} kJ, on the metre at {wear['from_m'][worst]:.0f} m.{not_shown}"
     )
     return Figure("track_wear", "Wear and brake force along the track", caption, canvas)

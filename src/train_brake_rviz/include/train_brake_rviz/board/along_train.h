@@ -9,8 +9,8 @@
 /// What is drawn over the length of the train: the train itself, its track and plots share one abscissa.
 namespace train_brake_rviz {
 
-/// From positions along the track to the board. The train travels to the left, so that its first vehicle
-/// stands where plots begin.
+/// From positions along the track to the board. The train travels to the left, so that its first vehicle is where plots
+/// begin.
 struct Abscissa {
   double head_m;  ///< position that is drawn at the left end
   double left;    ///< end on the board

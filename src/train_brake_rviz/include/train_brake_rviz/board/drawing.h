@@ -42,8 +42,8 @@ struct Text {
 /// Width of a line of text as rviz sets it, in units of its height: Liberation Sans, wide blanks.
 double TextWidth(const std::string& words);
 
-/// Coloured shapes and texts, still without any thought of how they are shown. All that has an area is made of
-/// triangles, three vertices each.
+/// Coloured shapes and texts, independent of how they are displayed. All that has an area is made of triangles, three
+/// vertices each.
 class Drawing {
  public:
   /// The layer of what is drawn from now on.

@@ -11,8 +11,8 @@ constexpr Color Rgb(unsigned hex) {
           static_cast<float>(hex & 0xff) / 255.0f};
 }
 
-/// Colours of things: those of Okabe and Ito, which every kind of colour vision tells apart, and greys. The
-/// report (train_brake_report/style.py) has the same ones.
+/// Colours of things: those of Okabe and Ito, which every kind of colour vision can distinguish, and greys. The report
+/// (train_brake_report/style.py) has the same ones.
 namespace palette {
 inline constexpr Color kOrange = Rgb(0xe69f00), kSkyBlue = Rgb(0x56b4e9), kGreen = Rgb(0x009e73), kBlue = Rgb(0x0072b2),
                        kVermillion = Rgb(0xd55e00), kPurple = Rgb(0xcc79a7);

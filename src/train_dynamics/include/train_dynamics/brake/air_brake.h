@@ -136,7 +136,7 @@ struct AirBrakeParams {
     v.Check(sources.size() <= 100, "sources", "must list at most 100 sources");
   }
 
-  /// What commands break in a train of so many vehicles, by the keys of a scenario.
+  /// The rules that the commands break in a train of this many vehicles, with the scenario's keys.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
   /// Commands without effect, and applications that this model gives too much pressure.
   std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
@@ -147,14 +147,14 @@ struct AirBrakeParams {
 ///
 ///   p = target + (begin - target) exp(-rate (t - t_begin)),  from t_begin until the next phase begins
 ///
-/// Arrays of [phase][vehicle], `stride` vehicles to a phase. The first phase begins before all times that are
-/// asked for; one that a vehicle does not have begins at infinity.
+/// Arrays of [phase][vehicle], `stride` vehicles to a phase. The first phase begins before any time that is queried;
+/// phases that a vehicle does not have begin at infinity.
 struct BrakePhases {
   int phases, stride;
   const double *begin_s, *begin_pa, *target_pa, *rate_per_s;
 };
 
-/// Of a vehicle, or of several: where its pressure tends, what is left until there, and how fast that fades.
+/// For one vehicle or several: the target pressure, the remaining gap to it, and the rate at which the gap decays.
 template <class T>
 struct CylinderGap {
   T target_pa;
@@ -162,7 +162,7 @@ struct CylinderGap {
   T rate_per_s;
 };
 
-/// The gap of a vehicle, or of several from it on, at a time.
+/// The gap at a time, of one vehicle or of several consecutive ones.
 template <class T>
 CylinderGap<T> CylinderGapAt(const BrakePhases& p, int vehicle, double time_s) {
   T begin_s = Load<T>(p.begin_s + vehicle), begin_pa = Load<T>(p.begin_pa + vehicle);
@@ -179,7 +179,7 @@ CylinderGap<T> CylinderGapAt(const BrakePhases& p, int vehicle, double time_s) {
   return {target_pa, (begin_pa - target_pa) * Exp(-rate_per_s * (T(time_s) - begin_s)), rate_per_s};
 }
 
-/// Cylinder pressure of a vehicle, or of several from it on [Pa], at a time.
+/// Cylinder pressure [Pa] at a time, of one vehicle or of several consecutive ones.
 template <class T>
 T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
   const CylinderGap<T> gap = CylinderGapAt<T>(p, vehicle, time_s);
@@ -196,7 +196,7 @@ T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
 ///   an equal reduction     nothing
 ///   a smaller reduction    a rise of the pipe's pressure: a release, full or graduated (graduated_release)
 ///
-/// A command that does something reaches vehicle i when the first wave does (t_d,i of FirstWave in brake/brake_wave.h;
+/// A command that has an effect reaches vehicle i with the first wave (t_d,i of FirstWave in brake/brake_wave.h;
 /// releases and smaller reductions start at the sources that release). From then on, with p_m the pressure at that
 /// moment,
 ///
@@ -206,29 +206,29 @@ T CylinderPressure(const BrakePhases& p, int vehicle, double time_s) {
 ///
 /// A later command overtakes an earlier one where its wave is faster: a vehicle obeys the newest command that
 /// has reached it. Distances are between vehicle centres on the unstretched train. Stateless in time: any time may be
-/// asked for.
+/// queried.
 ///
 /// Left out: reservoirs. An application after a release has the pressure of a fully charged train; a real one has
 /// less (Warnings says so).
 class AirBrake {
  public:
   /// @param vehicle_positions_m  centre of each vehicle on the unstretched train, any origin, front to rear
-  /// @throws std::invalid_argument if a source stands outside the train, a reduction lies outside the measured
-  ///         range, times do not ascend, or no source releases where a command demands it.
+  /// @throws std::invalid_argument if a source is outside the train, a reduction lies outside the measured range, times
+  ///         do not ascend, or no source releases where a command demands it.
   AirBrake(const AirBrakeParams& params, const std::vector<BrakeCommand>& commands,
            const std::vector<double>& vehicle_positions_m);
 
   int vehicles() const { return static_cast<int>(positions_m_.size()); }
 
-  /// Another command, given while the others are under way. Those of later times go on to hold after it.
+  /// Adds a command while earlier ones still propagate. Commands of later times remain valid.
   /// @throws std::invalid_argument as the constructor
   void Command(const BrakeCommand& command);
 
-  /// The brake pipe opens between vehicles `connection` and `connection` + 1, from 0: an emergency from there to both
-  /// sides, which no command ends. Where an emergency holds already it goes on, for good.
+  /// The brake pipe opens between vehicles `connection` and `connection` + 1, from 0: an emergency propagates from
+  /// there in both directions, and no command ends it. An emergency already in effect becomes permanent.
   void OpenPipe(double time_s, int connection);
 
-  /// What the pressures are made of; the stride is a multiple of 8.
+  /// The phases that the pressures are computed from; the stride is a multiple of 8.
   BrakePhases Phases() const;
 
   /// Cylinder pressure of each vehicle [Pa] at time t [s]; resizes `pressure_pa`.
@@ -246,10 +246,10 @@ class AirBrake {
     double time_s;
     int connection;
   };
-  /// The phases that the commands make, and then the openings of the pipe.
+  /// Builds the phases from the commands, then from the openings of the pipe.
   void MakePhases();
   void AddPhases(const Opening& opening);
-  /// Puts the phases side by side.
+  /// Copies the phases into the arrays [phase][vehicle].
   void Arrange();
 
   AirBrakeParams params_;

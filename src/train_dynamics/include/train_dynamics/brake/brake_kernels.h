@@ -16,9 +16,9 @@ struct GapArrays {
 struct BrakeKernels {
   /// Pressures at a time.
   void (*cylinder_pressures)(const BrakePhases& phases, double time_s, int count, double* pressure_pa);
-  /// Gaps to the targets at a time, and by what factor they close in dt.
+  /// Gaps to the targets at a time, and the factor by which they shrink in dt.
   void (*cylinder_gaps)(const BrakePhases& phases, double time_s, double dt_s, int count, const GapArrays& arrays);
-  /// Closes the gaps by `steps` times dt; the pressures then.
+  /// Advances the gaps by `steps` times dt, and gives the pressures then.
   void (*close_cylinder_gaps)(int steps, int count, const GapArrays& arrays, double* pressure_pa);
 };
 

@@ -14,23 +14,23 @@ namespace train_dynamics {
 ///   p = target + g,  g(t + dt) = g(t) exp(-rate dt)
 ///
 /// A window in which any vehicle's phase begins is evaluated by the law throughout. So the pressures at t_h
-/// depend on h alone, whatever was asked for before, and differ from the law's by roundings only: at most
-/// `steps` of half an ulp of g.
+/// depend on h alone, whatever times were queried before, and differ from the law's by rounding only: at most `steps`
+/// of half an ulp of g.
 class BrakePressures {
  public:
   /// @param dt_s  step of the grid, > 0
   /// @param steps  length of a window, >= 1
   BrakePressures(AirBrake brake, double dt_s, int steps);
 
-  /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
+  /// See AirBrake. Pressures of earlier times must not be queried afterwards.
   void Command(const BrakeCommand& command);
-  /// See AirBrake. Pressures of earlier times must not be asked for afterwards.
+  /// See AirBrake. Pressures of earlier times must not be queried afterwards.
   void OpenPipe(double time_s, int connection);
 
-  /// @param time_s  the grid's time nearest to it is meant, t >= 0
+  /// @param time_s  rounded to the nearest time of the grid; t >= 0
   void PressuresAt(double time_s, std::vector<double>& pressure_pa);
 
-  /// The pressures are a function of time and of where the pipe is open, which the connections remember.
+  /// No state of its own: the pressures depend on time and on where the pipe is open, which the connections store.
   template <class Function>
   void ForEachField(Function&& /*field*/) {}
 
@@ -44,7 +44,7 @@ class BrakePressures {
   std::vector<double> begin_s_;  ///< of all phases, ascending
   long window_ = -1;
   bool by_law_ = false;                             ///< throughout the window
-  long at_ = 0;                                     ///< step that gap_pa_ is of
+  long at_ = 0;                                     ///< step that gap_pa_ belongs to
   std::vector<double> target_pa_, gap_pa_, decay_;  ///< [vehicle], filled up to whole packs of lanes
 };
 

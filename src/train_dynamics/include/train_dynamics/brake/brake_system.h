@@ -49,20 +49,20 @@ struct BrakeSystemParams {
     return function(empirical);
   }
 
-  /// What these commands break in a train of so many vehicles.
+  /// The rules that these commands break in a train of this many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const {
     return OfKind([&](const auto& system) { return system.BrokenRules(commands, vehicles); });
   }
   std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const {
     return OfKind([&](const auto& system) { return system.Warnings(commands, vehicles); });
   }
-  /// Whether a smaller reduction lets all cylinders down to its pressure.
+  /// Whether a smaller reduction lowers all cylinders to its pressure.
   bool ReleasesGradually() const {
     return OfKind([](const auto& system) { return system.ReleasesGradually(); });
   }
 };
 
-/// The times at which pressures are asked for: middles of exchanges, and records.
+/// The times at which pressures are queried: the middle of each exchange, and each record.
 struct PressureGrid {
   double exchange_interval_s;
   int exchanges_per_record;
@@ -70,7 +70,7 @@ struct PressureGrid {
 
 /// The brake of a train, one of a closed set of systems, chosen once per train. Each has
 ///
-///   Command(command)                   the driver does this, now or later; the other commands stay
+///   Command(command)                   adds a command of the driver, for now or later
 ///   BailOff(vehicle, from_s, to_s)     of pneumatic brakes: see there
 ///   OpenPipe(time_s, connection)       the brake pipe parts there: an emergency from both sides
 ///   PressuresAt(time_s, pressure_pa)   cylinder pressure of each vehicle [Pa]; times ascend
@@ -89,7 +89,7 @@ class BrakeSystem {
               const std::vector<double>& vehicle_positions_m, const PressureGrid& grid,
               const std::vector<double>& vehicle_length_m = {});
 
-  /// The brakes of locomotives beside the system's: what acts in their cylinders.
+  /// Sets the locomotives' own brakes, which act on their cylinders beside the system.
   void SetLocomotiveBrakes(LocomotiveBrakes locomotives) { locomotives_ = std::move(locomotives); }
   LocomotiveBrakes& locomotives() { return locomotives_; }
 
@@ -119,10 +119,10 @@ class BrakeSystem {
     trapped_.push_back({vehicle, pressure_pa});
     if (auto* machine = std::get_if<PneumaticBrake>(&system_)) machine->TrapAir(vehicle, pressure_pa);
   }
-  /// From now on a time means one that is so much later.
+  /// Shifts all times passed from now on to this many seconds later.
   void MoveAhead(double seconds) { ahead_s_ += seconds; }
 
-  /// The machine behind it, at the last grid time before or at that of PressuresAt; none: nullptr.
+  /// The pneumatic brake at its last grid time not after that of PressuresAt; nullptr if the system is another one.
   const PneumaticBrake* pneumatic() const { return std::get_if<PneumaticBrake>(&system_); }
 
   template <class Function>

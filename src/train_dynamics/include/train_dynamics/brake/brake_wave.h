@@ -20,7 +20,7 @@ struct WaveArrival {
 ///
 ///   t_d = t + min over sources (delay + distance / wave speed)
 ///
-/// Of waves that arrive together the distance is that of the source listed first.
+/// If waves arrive together, the distance is that of the source listed first.
 ///
 /// @param position_m  of the vehicle's centre on the unstretched train, the same axis as the sources'
 /// @param wave_speed_mps  > 0

@@ -8,7 +8,7 @@
 
 namespace train_dynamics {
 
-/// What the locomotives of a train have besides its automatic air brake.
+/// The brakes of a train's locomotives besides the automatic air brake.
 struct LocomotiveBrakeParams {
   double maximum_independent_kpa = 450.0;
   double independent_fill_kpa_per_s = 100.0;
@@ -50,17 +50,17 @@ struct LocomotiveBrakeCommand {
 ///
 ///   p = max(p_i, max(0, p_a - k F))
 ///
-/// p_a [Pa] of the automatic brake; p_i of the independent brake, which goes to what the driver asks for at a constant
-/// rate, up or down; k = blending_kpa_per_kn; F >= 0 effort of the dynamic brake over the exchange before. Blending
-/// acts in an emergency, too [A]. p_i is a function of time and of the commands so far: there is no other state. Its
-/// air comes from the main reservoir, outside of the balance of the pipe's air.
+/// p_a [Pa] of the automatic brake; p_i of the independent brake, which follows the driver's demand at a constant rate,
+/// up or down; k = blending_kpa_per_kn; F >= 0 effort of the dynamic brake over the previous exchange. Blending acts in
+/// an emergency, too [A]. p_i is a function of time and of the commands so far: there is no other state. Its air comes
+/// from the main reservoir, outside of the balance of the pipe's air.
 ///
 /// Left out: relay valves by speed; an independent brake that cuts the dynamic brake out.
 class LocomotiveBrakes {
  public:
   struct Locomotive {
     int vehicle;             ///< index from 0
-    double command_delay_s;  ///< of the driver's commands on their way to it
+    double command_delay_s;  ///< transmission delay of the driver's commands to it
   };
 
   LocomotiveBrakes() = default;  ///< of no locomotives: nothing acts
@@ -70,7 +70,7 @@ class LocomotiveBrakes {
     int vehicle;
     double from_s, to_s;
   };
-  /// Commands may come in any order, but not before the last time asked for. @return bail-offs that it makes
+  /// Commands may come in any order, but none before the last time queried. @return bail-offs that the command causes
   std::vector<BailOff> Command(const LocomotiveBrakeCommand& command);
 
   bool blends() const { return params_.blending_kpa_per_kn > 0.0 && !brakes_.empty(); }
@@ -79,7 +79,7 @@ class LocomotiveBrakes {
   std::size_t size() const { return brakes_.size(); }
   int vehicle(std::size_t locomotive) const { return brakes_[locomotive].vehicle; }
 
-  /// Turns automatic pressures into what acts. Times must ascend.
+  /// Converts the pressures of the automatic brake into the acting ones. Times must ascend.
   /// @param pressure_pa  [vehicle] above the atmosphere, >= 0
   void Act(double time_s, std::vector<double>& pressure_pa);
 

@@ -59,9 +59,9 @@ struct ShoeFrictionTableParams {
   }
 };
 
-/// Shoes with ice on them: their friction has the factor  min(1, f + (1 - f) E / E_w),  E the energy that the shoes of
-/// the vehicle have taken up since the start of the run, over its wheels. [A] Left out: ice that comes again; the
-/// difference between wheels.
+/// Brake shoes with ice on them: their friction has the factor  min(1, f + (1 - f) E / E_w),  E the energy that the
+/// vehicle's shoes have absorbed since the start of the run, per wheel. [A] Left out: renewed icing; differences
+/// between wheels.
 struct IcyShoesParams {
   double initial_factor = 0.7;
   double energy_per_wheel_j = 2e6;
@@ -124,7 +124,7 @@ T ShoeFriction(const ShoeFrictionParams& p, T speed) {
   return p.standstill_friction_coefficient * (v_kmh + p.reference_speed_kmh) / (2.0 * v_kmh + p.reference_speed_kmh);
 }
 
-/// What the law tos loses in a hot shoe [-], T in degrees Fahrenheit:  0 up to 200, 2.5e-6 (T - 200)^2 up to 420,
+/// Fade of a hot shoe by the law `tos` [-], T in degrees Fahrenheit:  0 up to 200, 2.5e-6 (T - 200)^2 up to 420,
 /// 0.00816 sqrt(T - 200) above.
 template <class T>
 T TosFade(T temperature_c) {
@@ -165,7 +165,7 @@ T ShoeFrictionByLaw(const ShoeFrictionParams& p, T speed, T shoe_load_n) {
   return p.wet_factor * mu;
 }
 
-/// What the brake shoes hang on, and with it what the torques on the wheelsets react on (2D model).
+/// The body that carries the brake shoes, and takes the reactions of the torques on the wheelsets (2D model).
 enum class BrakeReaction {
   kFrame,    ///< shoes on the bogie frame: it gets the opposite of the torque of each of its wheelsets
   kCarbody,  ///< shoes on the carbody; bearings, traction and dynamic brake react on the frame
@@ -222,7 +222,7 @@ enum class LoadSensingKind {
   kTwoStep        ///< the empty share below the change-over mass, else 1
 };
 
-/// A brake that is weaker where the vehicle is not full.
+/// Load-dependent braking: weaker if the vehicle is not full.
 struct LoadSensingParams {
   LoadSensingKind kind = LoadSensingKind::kProportional;
   double full_mass_kg = kRequired;
@@ -247,7 +247,7 @@ struct LoadSensingParams {
     }
   }
 
-  /// The share of the full load of the shoes that a vehicle of this mass has.
+  /// Shoe load of a vehicle of this mass as a share of the full one [-].
   double Share(double mass_kg) const {
     if (kind == LoadSensingKind::kTwoStep) return mass_kg < changeover_mass_kg ? empty_share : 1.0;
     return Clamp(mass_kg / full_mass_kg, least_share, 1.0);
@@ -309,7 +309,7 @@ T TosRiggingEfficiency(T pressure_pa) {
   return Sqrt(Log(psi - 6.0)) / 3.2;
 }
 
-/// The rigging of a vehicle of given weight. What is constant in it.
+/// Constants of the rigging of a vehicle of given weight.
 struct BrakeRigging {
   BrakeRigging(const BrakeRiggingParams& p, double mass_kg, double weight_n)
       : params(p),

@@ -16,7 +16,7 @@ struct FileKind {
   std::vector<strict_config::KeyDescription> keys;  ///< of parts within it only that they are parts
 };
 
-/// All kinds, the scenario first, then parts in the order in which they come up.
+/// All kinds, the scenario first, then parts in the order of their first use.
 std::vector<FileKind> ConfigurationKeys();
 
 }  // namespace train_dynamics::config

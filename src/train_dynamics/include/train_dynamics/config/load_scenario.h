@@ -27,8 +27,8 @@ struct LoadedScenario {
 
 /// Reads a scenario with all of its parts, and its pressure table if it names one.
 ///
-/// Beyond the rules of ScenarioParams, a 2D scenario must have vehicles of which a Wagon can be built and
-/// that rest on their springs, and a dt_s within the largest stable step of each (AnalyseModes).
+/// Beyond the rules of ScenarioParams, a 2D scenario must have vehicles from which a Wagon can be built and which rest
+/// on their springs, and a dt_s within the largest stable step of each (AnalyseModes).
 ///
 /// A relative path of the pressure table counts from the folder of the file that names it, or from the
 /// working directory where an override does. The table is CSV with the columns time_s, vehicle_1_pa,
@@ -39,7 +39,7 @@ struct LoadedScenario {
 /// @throws Error with everything that is wrong, as file:line: key ...
 LoadedScenario LoadScenario(const std::string& file, const std::vector<std::string>& overrides);
 
-/// Reads a scenario that stands alone in a text, such as Write gives; it must not name a pressure table.
+/// Reads a self-contained scenario from a text, such as Write makes; it must not name a pressure table.
 /// @param label  what messages name instead of a file
 /// @throws Error
 LoadedScenario LoadScenarioText(const std::string& text, const std::string& label);
@@ -47,7 +47,7 @@ LoadedScenario LoadScenarioText(const std::string& text, const std::string& labe
 /// Reads the track of a file: one of a track, a table of its points (CSV), or a scenario that has one.
 TrackParams LoadTrack(const std::string& file, const std::vector<std::string>& overrides);
 
-/// Reads a vehicle file likewise; a Wagon can be built of it.
+/// Reads a vehicle file in the same manner; checks that a Wagon can be built from it.
 VehicleParams LoadVehicle(const std::string& file, const std::vector<std::string>& overrides);
 
 }  // namespace train_dynamics::config

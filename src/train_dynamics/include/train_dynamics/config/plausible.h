@@ -6,10 +6,10 @@
 
 namespace train_dynamics::config {
 
-/// The sizes that a quantity of a real train or track can have, by its key in a configuration and, where one key is of
-/// several things, by what it is in; else by its unit. Wide enough for anything that runs on rails, and narrow enough
-/// to show a value in another unit (430000 kPa, 920 N/kN, a wheel of 460 m). Zero, where a key's own range has it,
-/// means that there is none of it and is not judged.
+/// The sizes that a quantity of a real train or track can have, by its key in a configuration (and by the enclosing
+/// part where one key has several meanings), or else by its unit. Wide enough for anything that runs on rails, and
+/// narrow enough to show a value in another unit (430000 kPa, 920 N/kN, a wheel of 460 m). Zero, where a key's own
+/// range allows it, means that the element is absent and is not judged.
 ///
 /// @param path  "train.consist[0].vehicle.carbody.mass_kg", or less of it
 /// @return the interval of the value's size; unbounded where nothing is known. Source [A]: about 30 times beyond what

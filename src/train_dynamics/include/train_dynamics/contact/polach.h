@@ -13,7 +13,7 @@ namespace train_dynamics {
 /// @param shear_modulus_pa  G; the paper's appendix calls its value "shear strength".
 double CreepStiffness(const ContactEllipse& ellipse, double shear_modulus_pa, double kalker_c11);
 
-/// What the creep law takes from the rail's surface beside mu0, in the symbols of AdhesionParams.
+/// Parameters of the rail's surface in the creep law besides mu0, in the symbols of AdhesionParams.
 ///
 /// P is double where all lanes of a T are on the same surface, else T: the bits are the same.
 template <class P>

@@ -89,7 +89,7 @@ inline ConnectionLaw ConnectionParams::Law() const {
   }
 }
 
-/// Where in the slack of its connections a train starts.
+/// Initial state of the slack in a train's connections.
 enum class SlackState { kStretched, kMiddle, kBunched };
 
 }  // namespace train_dynamics

@@ -1,13 +1,13 @@
 #pragma once
 
-/// What a law of the force between two vehicles is.
+/// The interface of a law of the force between two vehicles.
 ///
 /// A law is a struct of constant parameters with
 ///
 ///   kAccount                    the account of the energy ledger that its dissipation goes to
 ///   kStoresByMemory             how the ledger books it, see below
 ///   Memory<T>                   what it remembers between two evaluations, with ForEachField; NoMemory if nothing
-///   AtRest(q)                   the memory of a connection that stands at q [m] from the start
+///   AtRest(q)                   the memory of a connection that rests at q [m] at the start
 ///   Slack()                     free play in total [m]
 ///   TangentAt(force_n)          stiffness and damping of small motions about a force
 ///
@@ -22,7 +22,7 @@
 /// The part of the work F dq of an interval that is dissipated:
 ///
 ///   F dq - d StoredEnergy           if kStoresByMemory: what can be got back depends on the path; not below 0 if
-///                                   kRateIndependent, so that what a finite step makes shows in the residual
+///                                   kRateIndependent, so that the error of a finite step appears in the residual
 ///   (F - F_elastic) dq              otherwise, F_elastic the slope of StoredEnergy
 namespace train_dynamics {
 

@@ -15,7 +15,7 @@ enum class DraftGearFriction {
   kLuGre,        ///< mu follows the sliding over a length: a study
 };
 
-/// A friction draft gear, two equal ones of which stand in series with the slack of one coupler connection.
+/// A friction draft gear; two equal ones are in series with the slack of one coupler connection.
 struct DraftGearParams {
   double slack_m = kRequired;
   double preload_n = kRequired;

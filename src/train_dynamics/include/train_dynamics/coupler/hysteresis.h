@@ -21,9 +21,9 @@
 ///   F  = clamp(E + c q', lower(q), upper(q)) + stop
 ///
 /// the bounds being the branches with the sign of q. E depends on the path of q alone: a slow cycle takes the same
-/// share of energy at any speed. While E lies inside its bounds the damper takes what would ring.
+/// share of energy at any speed. While E is inside its bounds, the damper suppresses ringing.
 ///
-/// What can be got back from (x, E), down the stick line and then along Unloading, is the energy stored:
+/// The stored energy is what is recovered from (x, E) down the stick line and then along Unloading:
 ///
 ///   psi = U_u(x_e) + (E^2 - F_e^2) / (2 k),   F_e = Unloading(x_e)
 ///

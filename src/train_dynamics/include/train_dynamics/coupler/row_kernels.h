@@ -6,8 +6,8 @@
 
 namespace train_dynamics {
 
-/// What connections at equal distances in a train take from its vehicles and give to them, over the lanes of one
-/// instruction set. `stride` is the distance in vehicles, >= 1.
+/// Transfers between a train's vehicles and connections at equal distances in it, over the lanes of one instruction
+/// set. `stride` is the distance in vehicles, >= 1.
 struct RowKernels {
   /// difference[i] = x[i stride] - x[i stride + 1]
   void (*differences)(int count, int stride, const double* x, double* difference);

@@ -47,7 +47,7 @@ struct SmoothGears : DraftGear {
     return {};
   }
   double Slack() const { return params.slack_m; }
-  /// k_s / 2 of the two springs, and F mu_s / (2 tan(phi) v_e), the slope of the friction where the gears stand.
+  /// k_s / 2 of the two springs, and F mu_s / (2 tan(phi) v_e), the slope of the friction at rest.
   ConnectionTangent TangentAt(double force_n) const {
     const double damping =
         force_n * params.static_friction_coefficient / (2.0 * tan_wedge * params.smoothing_speed_mps);

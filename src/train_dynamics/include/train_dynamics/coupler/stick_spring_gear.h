@@ -55,8 +55,8 @@ GearForce<T> ConnectionForce(const StickSpringGears& gears, T q, T q_rate, Stick
   return StickSpringGearForce(gears, q, q_rate, memory);
 }
 
-/// What mu_k, the least friction, would give back. Below that branch the spring of a slow gear gives and takes what is
-/// not counted here: single steps may book less than zero, closed paths do not.
+/// Energy that would be recovered with mu_k, the least friction. The energy that the spring of a slow gear exchanges
+/// below that branch is not counted: single steps may book less than zero, closed paths do not.
 template <class T>
 T StoredEnergy(const StickSpringGears& gears, T q, const StickState<T>& memory) {
   const T travel = GearTravel(gears.params, q);

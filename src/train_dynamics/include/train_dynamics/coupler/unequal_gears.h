@@ -97,7 +97,7 @@ struct UnequalGears {
   ConnectionTangent TangentAt(double /*force_n*/) const { return {Stiffness(), Damping(), false}; }
 };
 
-/// Where a device stands after its travel has changed [N].
+/// The force E of a device after its travel has changed [N].
 template <class T, class Device>
 T Stick(const Device& device, T travel, T last_travel, T last_force) {
   return Clamp(last_force + device.stick_stiffness_n_per_m * (travel - last_travel), device.Unloading(travel),

@@ -65,8 +65,8 @@ constexpr T Exp(T x) {
   return Select(x < -708.0, 0.0, (power + power) * half_scale);
 }
 
-/// e^-x for x >= 0, with a relative error below 2e-12 (1.8e-12): for laws of friction, which are not known that well, at
-/// four fifths of the operations of Exp. Decay(0) is exactly 1; above 700 the result is that at 700, 1e-304.
+/// e^-x for x >= 0, with a relative error below 2e-12 (1.8e-12): for laws of friction, which are not known that well,
+/// at four fifths of the operations of Exp. Decay(0) is exactly 1; above 700 the result is that at 700, 1e-304.
 template <class T>
 constexpr T Decay(T x) {
   constexpr double kRounder = 6755399441055744.0;  // as in Exp

@@ -15,12 +15,12 @@
 /// N doubles side by side, with the vocabulary of numeric/scalar.h: a law written over T runs on Lanes<N> and
 /// gives in every lane the bits that it gives for `double`.
 ///
-/// A pack is an array of vector registers of the width that the compiler was told of (-mavx2, -mavx512f; two
-/// doubles without a flag), so that every N that is a multiple of the width is as fast as the machine allows.
-/// The registers are the vector extension of GCC and Clang, whose comparisons, ?: and integer shifts are
-/// single instructions. Measured over a draft gear's law without exponentials, std::experimental::simd is as fast
-/// in a single register (native_simd: within 4 %) but takes 2.4 (SSE2), 1.8 (AVX2) and 1.2 (AVX-512) times as long
-/// for eight lanes (fixed_size_simd<double, 8>: its masks are bit sets, packed and unpacked at every Select).
+/// A pack is an array of vector registers of the width given to the compiler (-mavx2, -mavx512f; two doubles without a
+/// flag), so that every N that is a multiple of the width is as fast as the machine allows. The registers are the
+/// vector extension of GCC and Clang, whose comparisons, ?: and integer shifts are single instructions. Measured over a
+/// draft gear's law without exponentials, std::experimental::simd is as fast in a single register (native_simd: within
+/// 4 %) but takes 2.4 (SSE2), 1.8 (AVX2) and 1.2 (AVX-512) times as long for eight lanes (fixed_size_simd<double, 8>:
+/// its masks are bit sets, packed and unpacked at every Select).
 ///
 /// A pack of one register, Lanes<kNativeLanes>, is also passed between functions in a register; a wider one
 /// goes through memory wherever a call is not inlined, but hides more of the latency of each instruction.

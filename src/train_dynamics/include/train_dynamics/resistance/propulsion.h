@@ -72,12 +72,12 @@ enum class BreakawayLaw {
   kConstant
 };
 
-/// What a vehicle's bearings resist at least while it starts, in newtons per kilonewton; q0 tonnes per axle:
+/// Least resistance of a vehicle's bearings while it starts, in newtons per kilonewton; q0 tonnes per axle:
 ///
 ///   roller_bearings 28 / (q0 + 7),  plain_bearings 142 / (q0 + 7)   (Russian traction rules [M]),  constant: as given.
 ///
 /// It holds from standstill until the vehicle has moved `distance_m` [A], in place of a + b k where that is less. Left
-/// out: how long the vehicle has stood, and temperature.
+/// out: the time at rest, and temperature.
 struct BreakawayParams {
   BreakawayLaw law = BreakawayLaw::kRollerBearings;
   double constant_n_per_kn = kRequired;

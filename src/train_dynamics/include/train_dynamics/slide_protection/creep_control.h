@@ -32,7 +32,7 @@ struct CreepControlParams {
 ///   s_p = s + tau ds/dt,   s_g = max(s* v_ref, s_min)
 ///   vent   s_p > (1 + b) s_g     fill   s_p < (1 - b) s_g     hold   between
 ///
-/// Where the peak is depends on the rail and the speed; the target is a parameter and does not seek it.
+/// The peak's position depends on the rail and the speed; the target is a fixed parameter and does not track it.
 struct CreepControl {
   CreepControlParams params;
 

@@ -55,7 +55,7 @@ struct SlideProtectionParams {
              "a_max, bound of the estimated reference speed's fall [A]");
     v.Number("least_speed_kmh", least_speed_kmh, kNonNegative, "reference speed below which all valves fill");
     v.Number("longest_vent_s", longest_vent_s, kPositive,
-             "longest vent in one piece; then the valve fills until no vent is asked for [M]");
+             "longest uninterrupted vent; then the valve fills until the vent demand ends [M]");
     v.Group("valve", valve, "valve and cylinder behind it");
     if (controller == SlideController::kThreshold3State)
       v.Group("threshold_3state", threshold_3state, "thresholds of that controller");
@@ -80,7 +80,7 @@ struct ProtectedWheelset {
   /// What was decided at the sample k, at k modulo their number.
   std::array<double, SlideProtectionParams::kLongestDelay + 1> decided{};
   double speed_mps = 0.0;  ///< u at the last sample
-  double vented_s = 0.0;   ///< for how long a vent has been asked for in one piece
+  double vented_s = 0.0;   ///< duration of the present uninterrupted demand to vent
   double vents = 0.0;      ///< how often the valve has begun to vent since the start
 };
 

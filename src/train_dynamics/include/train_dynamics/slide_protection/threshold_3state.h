@@ -44,8 +44,8 @@ struct Threshold3StateParams {
 ///   hold   else s > max(0.05 v_ref, 0.6)
 ///   fill   else                                                 [m/s, m/s^2; the defaults]
 ///
-/// Defaults [A]: no real device's; of its kind (EN 15595, UIC 541-05 set tests for such devices; no conformity is
-/// claimed).
+/// Defaults [A]: typical of such devices, not those of a real one (EN 15595, UIC 541-05 set tests for such devices; no
+/// conformity is claimed).
 struct Threshold3State {
   Threshold3StateParams params;
 

@@ -7,12 +7,12 @@
 ///
 /// A controller is a law with constant parameters, one of a closed set that its owner holds as a std::variant (see
 /// slide_protection.h). It is asked every sampling period, wheelset by wheelset, with a WheelReading and its own memory
-/// of that wheelset, and says what the actuator shall do. It knows no clock, no vehicle and no rail.
+/// of that wheelset, and returns the demand on the actuator. It is independent of clock, vehicle and rail.
 namespace train_dynamics {
 
 /// What a controller reads of one wheelset at a sample. Speeds are positive in the vehicle's direction of travel.
 struct WheelReading {
-  double reference_speed_mps;          ///< v_ref, the vehicle's speed as the controller believes it, >= 0
+  double reference_speed_mps;          ///< v_ref, the controller's value of the vehicle's speed, >= 0
   double reference_acceleration_mps2;  ///< v_ref less that of the sample before, over the period; 0 at the first
   double wheel_speed_mps;              ///< u = r omega
   double wheel_acceleration_mps2;      ///< a, of u likewise
@@ -22,9 +22,9 @@ struct WheelReading {
   double SlipRate() const { return reference_acceleration_mps2 - wheel_acceleration_mps2; }  ///< [m/s^2]
 };
 
-/// How a controller knows the vehicle's speed.
+/// Source of a controller's reference speed.
 enum class ReferenceSpeed {
-  kTrue,      ///< it is told: ideal
+  kTrue,      ///< the vehicle's true speed: ideal
   kEstimated  ///< v_ref <- max(max u_i, v_ref - a_max T_s), from the wheels alone
 };
 

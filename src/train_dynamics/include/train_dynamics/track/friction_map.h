@@ -39,6 +39,6 @@ struct FrictionPatchParams {
   double RampLength() const { return ramp_length_m.value_or(adhesion ? 1.0 : 0.0); }  ///< [m]
 };
 
-inline constexpr std::size_t kMostPatchesOnTheWay = 100;  ///< patches that come while a train runs
+inline constexpr std::size_t kMostPatchesOnTheWay = 100;  ///< patches that are added during a run
 
 }  // namespace train_dynamics

@@ -15,8 +15,7 @@ struct Stretch {
 ///
 /// Piece 0 lies before the first cut, piece i on [cut i - 1, cut i), the last piece behind the last cut. A position is
 /// looked up in a time that does not grow with the number of cuts as long as they are spread over the track: equal
-/// cells, two per cut, tell which cuts a position has to be compared with. Where many cuts crowd in one cell these are
-/// searched by halving.
+/// cells, two per cut, give the cuts to compare a position with. Many cuts in one cell are searched by bisection.
 ///
 /// A look-up depends on the position only and remembers nothing: in any order and direction of look-ups, the answer is
 /// the same.

@@ -6,7 +6,7 @@
 
 #include "train_dynamics/parameters.h"
 
-/// What a route has beside grades and surfaces, by position along it.
+/// What a route has besides grades and surfaces, by position along it.
 namespace train_dynamics {
 
 /// A curve of constant radius on [from_m, to_m); the track is straight outside of all curves. Transition curves are
@@ -71,7 +71,7 @@ struct HeightParams {
   }
 };
 
-/// All that is known of the route at one position: a row of a table. What a row leaves empty goes on as before.
+/// All that is known of the route at one position: a row of a table. An empty entry keeps the value of the row before.
 struct RoutePointParams {
   std::optional<double> position_m, position_km;
   std::optional<double> grade_permille, grade_percent;

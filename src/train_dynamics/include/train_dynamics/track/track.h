@@ -70,24 +70,25 @@ struct TrackParams {
   void JudgeRamps(std::vector<BrokenRule>& broken) const;
 };
 
-/// The track made ready for wheels that ask what is under them; constant, but for patches that are added.
+/// The track prepared for look-ups by position; constant, except for patches that are added.
 ///
-/// Each quantity has pieces of its own (track/pieces.h) and a value for each. Vehicles side by side ask once as long as
-/// they are on the same piece. A surface that changes while the train runs (water, cleaning, sand) has its place in
-/// SurfaceFrom and SurfaceAt: they give mu0 and the rest for a position, and need only be given the state of its cell.
+/// Each quantity has pieces of its own (track/pieces.h) and a value for each. Vehicles side by side share one look-up
+/// while they are on the same piece. A surface that changes while the train runs (water, cleaning, sand) has its place
+/// in SurfaceFrom and SurfaceAt: they give mu0 and the rest for a position, and need only be given the state of its
+/// cell.
 class Track {
  public:
   /// Not explicit: a track is its parameters.
   /// @throws std::invalid_argument when the parameters violate their rules
   Track(const TrackParams& params = {});
 
-  /// Puts patches over those that are there. None of their ends may lie within a ramp: IsWithinRamp.
+  /// Adds patches on top of the existing ones. None of their ends may lie within a ramp: IsWithinRamp.
   void AddPatches(const std::vector<FrictionPatchParams>& patches);
 
   bool has_dips = false;
   bool has_patches = false;
   bool has_curves = false;
-  /// Whether the rail is level but for grades and has the vehicles' own surface all along.
+  /// Whether the rail has no dips and, everywhere, the vehicles' own surface.
   bool IsPlain() const { return !has_dips && !has_patches; }
 
   const StepFunction& grades() const { return grades_; }              ///< [-], rise over run
@@ -113,8 +114,8 @@ class Track {
                                    double* values) const;
 
  private:
-  /// What a piece of track has of the patches: one surface, or a ramp between two. Indices of patches; -1: the
-  /// vehicle's own surface.
+  /// The surface of a piece of track: one patch, or a ramp between two. Indices of patches; -1: the vehicle's own
+  /// surface.
   struct SurfacePiece {
     int before, behind;
   };
@@ -225,7 +226,7 @@ struct OneSurface {
 };
 
 /// The surface outside of every patch: the vehicle's own.
-/// @tparam T  only tells the instances of kernels apart
+/// @tparam T only distinguishes the instances of kernels
 /// @param vehicle  must outlive what is returned
 template <class T>
 OneSurface OwnSurface(const AdhesionParams& vehicle) {

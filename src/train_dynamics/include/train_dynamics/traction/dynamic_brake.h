@@ -10,7 +10,7 @@
 
 namespace train_dynamics {
 
-/// The brake that makes generators of a locomotive's traction motors.
+/// The dynamic brake of a locomotive, whose traction motors then work as generators.
 struct DynamicBrakeParams {
   double largest_effort_n = kRequired;
   double rim_power_w = kRequired;

@@ -10,7 +10,7 @@
 
 namespace train_dynamics {
 
-/// What a locomotive takes from its tank or its line for the power at the rims.
+/// The energy that a locomotive draws from its tank or its line for the power at the rims.
 struct EnergySupplyParams {
   std::vector<double> power_share = {1.0};
   std::vector<double> efficiency = {0.35};

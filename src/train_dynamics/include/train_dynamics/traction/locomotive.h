@@ -13,7 +13,7 @@
 
 namespace train_dynamics {
 
-/// What makes a locomotive of a vehicle: driven wheels, their effort, their brake, what they take for it.
+/// The traction equipment of a locomotive: driven wheels, tractive effort, dynamic brake, energy supply.
 struct TractionParams {
   std::string name;
   TractiveEffortParams tractive_effort;
@@ -50,7 +50,7 @@ struct TractionParams {
   }
 };
 
-/// What the driver asks of a locomotive. Both at once: the dynamic brake holds.
+/// The driver's demand on a locomotive. If both are set, the dynamic brake takes precedence.
 struct NotchCommand {
   double throttle_notch = 0.0;
   double dynamic_brake_notch = 0.0;

@@ -27,7 +27,7 @@ struct SlipControlParams {
   }
 };
 
-/// The share of its torque that a wheelset must do without from now on [-], 0 ... 1:
+/// Share by which the torque of a wheelset is reduced from now on [-], 0 ... 1:
 ///
 ///   reduction = max( K (s - s*),  reduction before - recovery T_s ),   s = u - v,  s* = max(0.02 v, 0.1 m/s)
 ///
@@ -37,7 +37,7 @@ struct SlipControlParams {
 /// @param speed_mps        v, of the vehicle: the ideal reference
 /// @param wheel_speed_mps  u, of the tread
 inline double NextReduction(const SlipControlParams& p, double reduction, double speed_mps, double wheel_speed_mps) {
-  // Traction pulls forwards: treads that are faster than the vehicle slip, whichever way it rolls.
+  // Traction pulls forwards: treads that are faster than the vehicle slip, whether it rolls forwards or backwards.
   const double slip_mps = wheel_speed_mps - speed_mps;
   const double target_mps = Max(p.least_slip_mps, p.target_creepage * std::abs(speed_mps));
   const double asked = Clamp(p.gain_per_mps * (slip_mps - target_mps), 0.0, 1.0);

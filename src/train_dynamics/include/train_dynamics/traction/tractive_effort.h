@@ -62,7 +62,7 @@ struct EffortTableParams {
   double LargestPower() const;
 };
 
-/// What a locomotive can pull with, at the rims of its driven wheels.
+/// The tractive effort of a locomotive at the rims of its driven wheels.
 struct TractiveEffortParams {
   double starting_effort_n = kRequired;
   double rim_power_w = kRequired;
@@ -81,7 +81,7 @@ struct TractiveEffortParams {
   }
 };
 
-/// The speed that divides a power at the least [m/s]: below it, power sets no limit that matters.
+/// The least speed by which a power is divided [m/s]: below it, power sets no limit that matters.
 inline constexpr double kLeastPowerSpeed = 0.1;
 
 /// Effort at the rims that a throttle asks for [N], >= 0:

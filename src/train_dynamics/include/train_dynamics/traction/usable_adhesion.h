@@ -7,14 +7,14 @@
 
 namespace train_dynamics {
 
-/// What limits the effort of a locomotive's driven wheels to what the rail is known to give.
+/// The law that limits the effort of a locomotive's driven wheels to the adhesion of the rail.
 enum class UsableAdhesionLaw {
   kCurtiusKniffler,  ///< falls over the speed
   kConstant,
   kUnlimited  ///< the effort is not limited; the 2D model's creep forces limit it all the same
 };
 
-/// The adhesion that a locomotive's control makes use of.
+/// The adhesion that a locomotive's control uses.
 struct UsableAdhesionParams {
   UsableAdhesionLaw law = UsableAdhesionLaw::kCurtiusKniffler;
   double coefficient = 0.36;

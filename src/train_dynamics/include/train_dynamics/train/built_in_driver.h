@@ -37,7 +37,7 @@ struct DriversTrain {
   double ApplicationShare(double time_s) const;
 };
 
-/// Collects it. The brake's responses are those of the scenario's brake on a train at rest.
+/// Collects this knowledge. The brake's responses are those of the scenario's brake on a train at rest.
 DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemParams& brake, const Consist& consist);
 
 /// What the built-in driver remembers from one period to the next.
@@ -81,9 +81,9 @@ double StoppingDistance(const BuiltInDriverParams& p, const DriversTrain& train,
 ///   grade
 ///
 /// The force is given by these rules: traction and brakes never work together, except to start uphill; the dynamic
-/// brake comes first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. A
-/// notch is taken when the force is more than 0.7 of the way to the next. The air brake: a first reduction, steps to
-/// what is needed, at most the largest; a brake of graduated release is let down in steps, another one is released once
+/// brake comes first, and the air brake takes what it cannot give; on a falling demand the air brake goes first. The
+/// lever goes up a notch when the demand exceeds 0.7 of the step to it. The air brake: a first reduction, steps to what
+/// is needed, at most the largest; a graduated-release brake is reduced in steps, a direct-release one is released once
 /// the dynamic brake alone is more than enough; after a release the driver waits recharge_time_s, and re-applies one
 /// step deeper if the speed does not allow that. A stop: creep, then the reduction whose predicted distance fits, then
 /// the largest at rest. After an emergency it closes the throttle, and does nothing more before a release.

@@ -7,7 +7,7 @@
 
 namespace train_dynamics {
 
-/// Bytes that are not a snapshot, or not one that fits.
+/// Bytes that are not a snapshot, or are one that does not fit.
 class SnapshotError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -30,8 +30,8 @@ class ByteWriter {
   Bytes bytes_;
 };
 
-/// Reads them in the same order. Keeps a reference. Everything throws SnapshotError where the bytes end too
-/// early; nothing larger than what is left is ever allocated.
+/// Reads them in the same order. Keeps a reference. All functions throw SnapshotError if the bytes end too early;
+/// nothing larger than what is left is ever allocated.
 class ByteReader {
  public:
   explicit ByteReader(const Bytes& bytes) : at_(bytes.data()), left_(bytes.size()) {}
@@ -42,7 +42,7 @@ class ByteReader {
   std::string Text();
   Bytes Block();
   std::vector<double> Numbers();
-  /// @throws SnapshotError if something is left
+  /// @throws SnapshotError if bytes are left
   void End() const;
 
  private:

@@ -17,7 +17,7 @@ struct Situation {
   double speed_mps = 0.0;   ///< of the vehicles' momentum, forward positive
 };
 
-/// A command that was given to the running train: not by its time in the scenario.
+/// A command that was given during the run, not by its time in the scenario.
 struct GivenCommand {
   std::uint64_t exchange = 0;  ///< at whose start it was given
   DriverCommand command;
@@ -51,10 +51,10 @@ class ConditionWatch {
 
 /// The driver's commands that are given while the train runs, and the end of the run.
 ///
-/// A command with a condition is watched for from the moment on when all those before it in the list have been given:
-/// the list is executed in order. Commands with a time wait for nothing, and are not part of this schedule: brake and
-/// locomotives have them from the start. Patches of rail are given here, whatever their time. All conditions are judged
-/// at the start of an exchange, so that what follows is the same for any number of threads, ranks and machines.
+/// A command with a condition is watched as soon as all commands before it in the list have been given: the list is
+/// executed in order. Commands with a time wait for nothing, and are not part of this schedule: brake and locomotives
+/// have them from the start. Patches of rail are given here, whatever their time. All conditions are judged at the
+/// start of an exchange, so that what follows is the same for any number of threads, ranks and machines.
 class CommandSchedule {
  public:
   /// @param until  where it holds, the run is to end; `standing` counts once the train has moved
@@ -75,10 +75,11 @@ class CommandSchedule {
   /// All commands that have been given by conditions or from outside, in their order.
   const std::vector<GivenCommand>& Given() const { return given_; }
 
-  /// Those that wait for a condition or an exchange still, as sentences.
+  /// The commands that still wait for a condition or an exchange, as sentences.
   std::vector<std::string> NotGiven() const;
 
-  /// As numbers, and back. @throws SnapshotError if they are not those of such a schedule
+  /// Saves the schedule's state as numbers, and restores it. @throws SnapshotError if the numbers do not fit this
+  /// schedule
   std::vector<double> Memory() const;
   void SetMemory(const std::vector<double>& memory);
 

@@ -39,7 +39,7 @@ struct ConsistGroupParams {
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Part("vehicle", vehicle, "vehicles", "the vehicle of which the group has count");
+    v.Part("vehicle", vehicle, "vehicles", "the vehicle of the group, count times");
     v.Number("load_fraction", vehicle.load_fraction, kFraction,
              "how much of its load each vehicle of the group carries, in place of the vehicle's own");
     v.Check(vehicle.load || !vehicle.load_fraction, "load_fraction",
@@ -80,7 +80,7 @@ struct ConsistGroupParams {
   }
 };
 
-/// A train: groups of vehicles from front to rear. Between units stands `connection`.
+/// A train: groups of vehicles from front to rear. `connection` joins the units.
 struct TrainParams {
   std::string name;
   ConnectionParams connection;

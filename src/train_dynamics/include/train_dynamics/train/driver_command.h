@@ -87,7 +87,7 @@ struct DriverCommand {
       v.Number("reduction_kpa", reduction_kpa, kPositive, "total reduction of the brake pipe's pressure");
     if (IsOfLocomotives())
       v.Number("notch", notch, Range{0.0, 100.0, false, false},
-               "of throttle or dynamic brake; 0: off; each ends what the other has asked for");
+               "of throttle or dynamic brake; 0: off; each cancels the other");
     if (kind == DriverCommandKind::kIndependentBrake)
       v.Number("pressure_kpa", pressure_kpa, kNonNegative,
                "of the locomotives' cylinders by their own brake; 0: released");
@@ -121,13 +121,13 @@ struct DriverCommand {
   bool IsOfTrainBrake() const { return !IsOfLocomotives() && !IsOfLocomotiveBrakes() && !IsOfRail(); }
   /// A patch of rail, whose surface no driver commands.
   bool IsOfRail() const { return kind == DriverCommandKind::kFriction; }
-  /// That patch. Only of a command of it.
+  /// That patch. Only for a command of this kind.
   FrictionPatchParams OfRail() const { return {from_m, to_m, friction_coefficient, {}, {}}; }
-  /// The same for the train's brake, given at a time. Only of a command of it.
+  /// This command for the train's brake, given at a time. Only for commands of that brake.
   BrakeCommand OfBrake(double at_s) const;
-  /// The same for the locomotives, given at a time. Only of a command of locomotives.
+  /// This command for the locomotives, given at a time. Only for commands of locomotives.
   LocomotiveCommand OfLocomotives(double at_s) const;
-  /// The same for the locomotives' own brakes, given at a time. Only of a command of them.
+  /// This command for the locomotives' own brakes, given at a time. Only for commands of these.
   LocomotiveBrakeCommand OfLocomotiveBrakes(double at_s) const;
   /// As "apply 50 kPa" or "throttle 8".
   std::string Text() const;
@@ -137,25 +137,25 @@ struct DriverCommand {
 /// the brakes of locomotives on all locomotives.
 bool ActsOn(const DriverCommand& command, const ConsistGroupParams& group);
 
-/// The rules between a patch of rail that comes on the way and the track under it.
+/// The rules between a patch of rail that is added during the run and the track under it.
 /// @param key  of the command
 std::vector<BrokenRule> JudgePatch(const FrictionPatchParams& patch, const std::string& key, const TrackParams& track);
 /// The rule that a run takes at most kMostPatchesOnTheWay of them, as a sentence about `kind`.
 std::string RuleOfPatches();
 
-/// The same commands with the numbers of the locomotives of their group, where they name one that has some.
+/// The same commands, with the numbers of the locomotives of the group that they name, if it has any.
 std::vector<DriverCommand> WithVehicles(std::vector<DriverCommand> commands, const TrainParams& train);
-/// Those with a time, for the train's brake, in the order of the list.
+/// The commands with a time, for the train's brake, in the order of the list.
 /// @param index  of each in the list; null: not wanted
 std::vector<BrakeCommand> TimedBrakeCommands(const std::vector<DriverCommand>& commands,
                                              std::vector<std::size_t>* index = nullptr);
 
-/// A text that speaks of commands[k], where k counts those of the brake, with the numbers of the whole list.
+/// A text with commands[k], where k counts the commands of the brake only, renumbered by the whole list.
 /// @param index  of each in the list, as TimedBrakeCommands gives it
 std::string RenumberedCommands(const std::string& text, const std::vector<std::size_t>& index);
-/// Those with a time, for the locomotives, in the order of the list.
+/// The commands with a time, for the locomotives, in the order of the list.
 std::vector<LocomotiveCommand> TimedLocomotiveCommands(const std::vector<DriverCommand>& commands);
-/// Those with a time, for the locomotives' own brakes, in the order of the list.
+/// The commands with a time, for the locomotives' own brakes, in the order of the list.
 std::vector<LocomotiveBrakeCommand> TimedLocomotiveBrakeCommands(const std::vector<DriverCommand>& commands);
 
 }  // namespace train_dynamics

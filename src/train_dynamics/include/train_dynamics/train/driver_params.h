@@ -19,7 +19,7 @@ struct StopParams {
     v.Number("position_m", position_m, kFinite, "of the first vehicle's centre; or else station");
     v.Text("station", station, "name of a station of the track");
     v.Number("dwell_s", dwell_s, kNonNegative,
-             "standing time before the driver goes on to the next stop; after the last stop the train stays");
+             "standing time before the driver continues to the next stop; after the last stop the train stays");
     v.Check(position_m.has_value() == station.empty(), "position_m", "or station must be given, one of them",
             {"station"});
   }

@@ -18,8 +18,8 @@ struct PlaceAhead {
 
 /// What a driver sees and knows at the start of an exchange; positions are along the track, ahead is where they rise.
 ///
-/// What drives, in the master's own process or behind a service, is given this and nothing else. It is a function of
-/// the train's state at that exchange, so that a driver that depends on nothing else repeats its run bit for bit.
+/// A driver, in the master's process or behind a service, is given this and nothing else. It is a function of the
+/// train's state at that exchange, so that a driver that depends on nothing else repeats its run bit for bit.
 struct DriverView {
   std::uint64_t exchange = 0;
   double time_s = 0.0;
@@ -33,21 +33,22 @@ struct DriverView {
   std::vector<StationParams> stations_ahead;  ///< those that position_m has not passed, likewise
   double throttle_notch = 0.0, dynamic_brake_notch = 0.0;  ///< that the first locomotive obeys
   double effort_n = 0.0;                ///< at the rims of all locomotives: traction positive, dynamic brake negative
-  double reduction_kpa = 0.0;           ///< of the brake pipe, as last asked for; 0 after a release
-  bool emergency = false;               ///< was asked for, and no release since
+  double reduction_kpa = 0.0;           ///< of the brake pipe, as last commanded; 0 after a release
+  bool emergency = false;               ///< was commanded, and no release since
   double brake_pipe_kpa = 0.0;          ///< gauge, at the first vehicle; NaN: the brake has no pipe that is computed
   double cylinder_kpa = 0.0;            ///< gauge, of the first vehicle
   double mean_cylinder_kpa = 0.0;       ///< gauge, of all vehicles
   std::vector<double> coupler_force_n;  ///< [connection] in the coming interval, tension positive; empty: not shown
 };
 
-/// Sets where the driver's brake handle stands at a time, from the commands with a time and from those that were given.
+/// Sets the position of the driver's brake handle at a time, from the commands with a time and from those that were
+/// given.
 /// @param initial_reduction_kpa  at time 0
 void SetBrakeHandle(double initial_reduction_kpa, const std::vector<DriverCommand>& commands,
                     const std::vector<GivenCommand>& given, double time_s, double exchange_interval_s,
                     DriverView& view);
 
-/// Fills what a view has of the track under and ahead of a train: speed limits, grades, stations.
+/// Fills the part of a view that describes the track under and ahead of a train: speed limits, grades, stations.
 class RouteSight {
  public:
   /// @param start_position_m  of the first vehicle's centre along the track

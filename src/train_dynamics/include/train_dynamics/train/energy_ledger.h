@@ -14,8 +14,8 @@ namespace train_dynamics {
 ///   kinetic + potential + sum of dissipated = initial + gravity_work + traction_work + residual
 ///
 /// Every term is found by its own route: kinetic and potential energy from the state, works from force x path, step by
-/// step. Of external vehicles it knows the work of their couplers alone, which leaves the rest of the train: its
-/// account is `external_vehicles`. The residual therefore measures what the time integration creates or loses.
+/// step. Of external vehicles only the work of their couplers is known, which leaves the rest of the train; its account
+/// is `external_vehicles`. The residual therefore measures what the time integration creates or loses.
 struct EnergyLedger {
   double time_s = 0.0;
   double kinetic_j = 0.0;

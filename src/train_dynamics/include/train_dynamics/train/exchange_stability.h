@@ -24,8 +24,8 @@ namespace train_dynamics {
 /// @param head_mass_kg  see CouplerHeadMass
 double LongestStableExchange(const ConnectionParams& connection, double head_mass_kg);
 
-/// The mass that a coupler head sets against a quick force [kg]: the vehicle's inertia in LTD; in the 2D model that of
-/// the carbody, which yields in x and in pitch: 1 / (1/m + h^2/I), h the head's height over its centre of gravity.
+/// The effective mass of a coupler head against a fast force [kg]: the vehicle's inertia in LTD; in the 2D model that
+/// of the carbody, which yields in x and in pitch: 1 / (1/m + h^2/I), h the head's height over its centre of gravity.
 double CouplerHeadMass(const VehicleParams& vehicle, VehicleModel model);
 
 /// The lightest coupler head of a scenario's train [kg].

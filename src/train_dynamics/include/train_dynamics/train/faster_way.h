@@ -5,13 +5,13 @@
 
 namespace train_dynamics {
 
-/// Which of two ways to do the same thing over and over takes less time on this machine, beside what else it does:
-/// found by measurement, and again as that changes.
+/// Selects the faster of two ways to do a repeated task. Both are measured, again and again, because the other load of
+/// the machine changes.
 ///
 /// Way 0 is taken first. The other way is tried when it has not been for a while, and at once when the present one has
-/// become slower than the other one was. A trial ends early where the other way is slower; as long as it keeps losing,
-/// each while is twice as long as the one before. Means are compared, not medians: where a thread has to wait for its
-/// core, most rounds are fast and few take a hundred times as long.
+/// become slower than the other one was. A trial ends early where the other way is slower; as long as it stays slower,
+/// each interval between trials is twice the one before. Means are compared, not medians: where a thread has to wait
+/// for its core, most rounds are fast and few take a hundred times as long.
 class FasterWay {
  public:
   static constexpr double kShortest = 5e-3, kTrial = 20e-3;  ///< of work that a judgement is based on [s]

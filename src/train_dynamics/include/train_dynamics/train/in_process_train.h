@@ -4,11 +4,11 @@
 
 namespace train_dynamics {
 
-/// All vehicles in this process, but for external ones, shared out over a fixed number of threads; any number gives the
+/// All vehicles in this process, except external ones, distributed over a fixed number of threads; any number gives the
 /// same bits.
 class InProcessTransport : public Transport {
  public:
-  /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
+  /// @param threads  1 = the caller's only; at most one per vehicle is used
   /// @param is_joined  another transport has the external vehicles
   /// @throws std::invalid_argument if there are external vehicles and no transport for them
   InProcessTransport(const ScenarioParams& scenario, const Consist& consist, int threads, bool is_joined = false)

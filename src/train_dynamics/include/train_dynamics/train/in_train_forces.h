@@ -21,7 +21,7 @@ struct Parting {
   double time_s;
 };
 
-/// Work that the connections have taken up [J].
+/// Energy of the connections [J].
 struct ConnectionEnergy {
   double potential = 0.0;          ///< elastic energy stored now
   double draft_gears = 0.0;        ///< dissipated so far
@@ -46,7 +46,7 @@ class InTrainForces {
   /// @param external  indices of the external vehicles, ascending: the work done on them is booked
   InTrainForces(const Consist& consist, SlackState slack, double prediction_s, const std::vector<int>& external = {});
 
-  /// Takes the heads' displacements at time 0, where the connections stand in their start state of slack.
+  /// Takes the heads' displacements at time 0, at which the connections have their initial state of slack.
   void Begin(const std::vector<double>& head_displacement_m);
 
   /// Forces for the coming interval, booked at time_s, from the heads' velocities [m/s].
@@ -68,16 +68,16 @@ class InTrainForces {
   void AddMemoryTo(Digest& digest) const;
   ConnectionEnergy Energy() const;
 
-  /// All that the further forces, energies and extremes depend on, between two exchanges.
+  /// All that later forces, energies and extremes depend on, between two exchanges.
   std::vector<double> Memory() const;
-  /// @throws SnapshotError if it is not of so many connections
+  /// @throws SnapshotError if its length does not fit the connections
   void SetMemory(const std::vector<double>& memory);
 
  private:
   /// Connections of one type, at equal distances in the train.
   struct Row {
-    int at;     ///< the first, in its set
-    int place;  ///< the first, in the train
+    int at;     ///< index of the first connection in its set
+    int place;  ///< index of the first connection in the train
     int stride, count;
   };
   /// The connections of one type, side by side, filled up to whole packs of lanes.
@@ -104,7 +104,7 @@ class InTrainForces {
     std::vector<double> memory;  ///< of the law, [field][connection]
     std::vector<double> tension_n, tension_time_s, compression_n, compression_time_s;
     std::vector<double> stored_j, dissipated_j;
-    std::vector<double> parted_s;  ///< < 0: has not
+    std::vector<double> parted_s;  ///< time of parting; < 0: not parted
   };
   /// Where a connection of the train is.
   struct Place {

@@ -38,9 +38,9 @@ struct ExchangeRequest : LoadArrays {
   bool record = false;         ///< the reply shall hold the record of the interval's end
   bool ledger = false;         ///< ... and the vehicles' energies
   bool snapshot = false;       ///< the reply shall hold the vehicles' state at the interval's end
-  /// Those of rail that have come since the start of the run, each with a friction_coefficient and no ramp. They lie
-  /// over those of the track, later ones over earlier ones. All of them, in each exchange: a rank that comes later has
-  /// them, too.
+  /// Patches of rail added since the start of the run, each with a friction_coefficient and no ramp. They override
+  /// those of the track, later ones override earlier ones. Each exchange has all of them, so that a rank that joins
+  /// later has them, too.
   std::vector<FrictionPatchParams> friction_patches;
 };
 
@@ -68,7 +68,7 @@ struct VehicleRecords : RecordArrays {
   VehicleRecords(int vehicles, const std::vector<int>& detailed);
 };
 
-/// All arrays are indexed by vehicle; those of a record stay as they are when none was asked for.
+/// All arrays are indexed by vehicle; those of a record are unchanged if none was requested.
 struct ExchangeReply : ReplyArrays, VehicleRecords {
   VehicleFault fault;                 ///< the first in the order of the vehicles
   std::vector<VehicleEnergy> energy;  ///< with a ledger
@@ -82,7 +82,7 @@ struct ExchangeReply : ReplyArrays, VehicleRecords {
   ExchangeReply(int vehicles, const std::vector<int>& detailed);
 };
 
-/// How the master reaches all vehicles. The second of the two seams with virtual functions.
+/// The master's access to all vehicles. The second of the two interfaces with virtual functions.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -91,13 +91,13 @@ class Transport {
   /// Brings all vehicles to a state that a snapshot holds, at the beginning of an exchange; replies as Start.
   /// @throws SnapshotError if the snapshot does not fit
   virtual void Resume(std::uint64_t exchange, const std::vector<StateRow>& snapshot, ExchangeReply& reply) = 0;
-  /// Whether snapshots can be asked for; known once it has started.
+  /// Whether snapshots can be requested; known after the start.
   virtual bool GivesSnapshots() const { return true; }
   /// One exchange with every vehicle; returns when all have replied.
   virtual void Exchange(const ExchangeRequest& request, ExchangeReply& reply) = 0;
 };
 
-/// A run that cannot go on: names the vehicle, the quantity and the time.
+/// A run that cannot continue: names the vehicle, the quantity and the time.
 class SimulationFault : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

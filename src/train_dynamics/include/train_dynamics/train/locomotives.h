@@ -16,7 +16,7 @@ namespace train_dynamics {
 /// which is that of its coupler heads.
 class Locomotives {
  public:
-  /// @param commands  by the lead's clock; a group of locomotives has them by its delay later
+  /// @param commands  with the lead's times; each group of locomotives receives them later by its delay
   Locomotives(const Consist& consist, const std::vector<LocomotiveCommand>& commands);
 
   bool empty() const { return drives_.empty(); }
@@ -24,24 +24,24 @@ class Locomotives {
   /// The index of locomotive i in the train; ascending.
   int vehicle(std::size_t i) const { return drives_[i].vehicle; }
   const TractionParams& traction(std::size_t i) const { return drives_[i].traction; }
-  /// Another command, given while the others are under way; it arrives by each group's delay later.
+  /// Another command, given while the others are in transmission; it reaches each group after the group's delay.
   void Command(const LocomotiveCommand& command);
-  /// What the driver asks of locomotive i from the next exchange on, until a command of the list comes.
+  /// Sets the demand on locomotive i from the next exchange on, until the next command of the list.
   void SetCommand(std::size_t i, const NotchCommand& command) { drives_[i].command = command; }
   const NotchCommand& command(std::size_t i) const { return drives_[i].command; }  ///< that it obeys now
   const DriveState& drive(std::size_t i) const { return drives_[i].state; }
 
   /// Lets each locomotive begin with the notches of its group at time 0, and with their steady effort.
   void Begin(const Consist& consist, const std::vector<double>& head_velocity_mps);
-  /// Moves the drives on by an exchange and sets the loads that they are: empty arrays, where there are no locomotives.
+  /// Advances the drives by an exchange and sets their loads: empty arrays if there are no locomotives.
   /// @param middle_s           the middle of the exchange
   /// @param head_velocity_mps  [vehicle] of the coupler heads, at the exchange's start
   void Advance(double middle_s, double interval_s, const std::vector<double>& head_velocity_mps, LoadArrays& loads);
 
-  /// Takes the commands up to the middle of an exchange as obeyed: they are in the state that was restored.
+  /// Marks the commands up to the middle of an exchange as obeyed: the restored state includes them.
   void PassBy(double middle_s);
 
-  /// What the locomotives have taken from tank and line since the start [J]; see PowerTaken.
+  /// Energy that the locomotives have drawn from tank and line since the start [J]; see PowerTaken.
   double EnergyTaken() const;
   bool TellsEnergy() const;  ///< whether one of them has an energy supply
   double FuelMass() const;   ///< of those that burn fuel [kg]

@@ -11,7 +11,7 @@
 
 namespace train_dynamics {
 
-/// Results of a run with a slightly different start: to how many newtons the maxima of a run are determined.
+/// Results of a run with a slightly different start: shows to how many newtons the maxima of a run are determined.
 struct TwinRun {
   double start_offset_kmh = 0.0;        ///< of every vehicle's speed
   std::vector<ForceExtremes> extremes;  ///< [connection]
@@ -27,11 +27,11 @@ class RunSummary {
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
 
-  /// The summary shall tell how far this twin has come apart.
+  /// Sets the twin whose divergence from the run the summary reports.
   void SetTwin(TwinRun twin) { twin_ = std::move(twin); }
 
-  /// The ledger's residual over the energy turned over: dissipated, or put in or out of store, or worked by gravity and
-  /// traction, whichever is most [-]. 0 where nothing was turned over.
+  /// The ledger's residual [-], relative to the largest of: energy dissipated, change of stored energy, work of gravity
+  /// and traction. 0 if all of them are 0.
   double ResidualShare(const TrainMaster& master) const;
   double mean_speed_mps() const { return mean_speed_mps_; }
   double mean_distance_m() const { return mean_distance_m_; }
@@ -44,15 +44,15 @@ class RunSummary {
   const ScenarioParams& scenario() const { return scenario_; }
   const std::optional<TwinRun>& twin() const { return twin_; }
 
-  /// A time at which the train came to a stand.
+  /// A stop of the train.
   struct Stop {
     double time_s, distance_m;
-    double until_s;  ///< when it was under way again; NaN: it stands still
+    double until_s;  ///< when it moved again; NaN: it is still at rest
   };
 
   const std::vector<Stop>& stops() const { return stops_; }
   bool Stands() const { return !stops_.empty() && !(stops_.back().until_s == stops_.back().until_s); }
-  double BehindFurthest() const;  ///< [m] by how far the train has come back from its furthest place
+  double BehindFurthest() const;  ///< [m] distance that the train has come back from its furthest position
   bool RolledBack() const;
 
   /// The slides of the run so far, and the work on its track.
@@ -61,9 +61,9 @@ class RunSummary {
   /// A sentence about a train that came to lie beyond an end of its route; empty if it did not.
   std::string RouteWarning() const;
 
-  /// What the summary of the whole run needs to know of its beginning.
+  /// The state that the summary of a resumed run needs from its earlier part.
   std::vector<double> Memory() const;
-  /// @throws SnapshotError if it is not such
+  /// @throws SnapshotError if the numbers are not such a state
   void SetMemory(const std::vector<double>& memory);
 
  private:

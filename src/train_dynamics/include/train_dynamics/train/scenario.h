@@ -109,11 +109,11 @@ struct ScenarioParams {
   ScenarioParams WithBuiltInVehicles() const;
   /// Indices of the vehicles recorded in full detail, ascending, each once: those of the 2D model.
   std::vector<int> DetailedVehicles() const;
-  /// Of the vehicles of a group [m/s].
+  /// Initial speed of the vehicles of a group [m/s].
   double InitialSpeedOfGroup(std::size_t group) const {
     return train.consist[group].initial_speed_kmh.value_or(initial_speed_kmh) / 3.6;
   }
-  /// Of the vehicles' momentum [m/s].
+  /// Initial speed of the vehicles' momentum [m/s].
   double MeanInitialSpeed() const;
 
  private:
@@ -127,7 +127,7 @@ struct ScenarioParams {
   void JudgeSlideProtection(std::vector<BrokenRule>& broken) const;
 };
 
-/// What the group of a command of locomotives must be, as a rule, with the names that there are.
+/// The rule on the group that a command of locomotives names, with the existing names.
 std::string RuleOfGroup(const DriverCommand& command, const TrainParams& train);
 
 /// The brake system of a scenario that must have one.

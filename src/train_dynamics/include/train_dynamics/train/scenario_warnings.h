@@ -7,14 +7,14 @@
 
 namespace train_dynamics {
 
-/// The warnings about a scenario that keeps its rules.
+/// Warnings about a valid scenario.
 ///
-/// An exchange interval H that one of the connections does not stand: see LongestStableExchange. A smoothing speed v_e
-/// of draft gears too steep for the step:
+/// An exchange interval H at which one of the connections is unstable: see LongestStableExchange. A smoothing speed v_e
+/// of draft gears that is too small for the step:
 ///
 ///   v_e < 2 F mu_s dt / (tan(phi) m)    F = 900 kN, m of the lightest vehicle
 ///
-/// Besides: parts of the scenario that its models, or its pressure table, leaves unused.
+/// Also: parts of the scenario that its models or its pressure table leave unused.
 std::vector<Warning> Warnings(const ScenarioParams& scenario);
 
 }  // namespace train_dynamics

@@ -9,7 +9,7 @@
 
 namespace train_dynamics {
 
-/// What the slides of one wheelset came to over a run.
+/// Totals of the slides of one wheelset over a run.
 struct WheelsetSlides {
   int vehicle = 0, wheelset = 0;  ///< from 1
   int slides = 0;
@@ -29,7 +29,7 @@ struct TrackWork {
 
 /// Collects slides and the work on the track from a run's records as they pass.
 ///
-/// Between two looks at a vehicle, half a metre or one record apart, its work is spread evenly over the distance. The
+/// Between two samples of a vehicle, half a metre or one record apart, its work is spread evenly over the distance. The
 /// sum over the track is the ledger's creep account, up to rounding.
 class SlideResults {
  public:
@@ -38,14 +38,14 @@ class SlideResults {
   /// An observer of the run's TrainMaster.
   void Observe(const TrainRecord& record);
 
-  /// All slides, those that go on included, in the order of their start, then of vehicles and wheelsets.
+  /// All slides, ongoing ones included, in the order of their start, then of vehicles and wheelsets.
   std::vector<SlideEvent> Slides() const;
   /// Of the wheelsets that have slid, in the order of vehicles and wheelsets.
   std::vector<WheelsetSlides> Wheelsets() const;
   TrackWork Track() const;
 
   std::vector<double> Memory() const;
-  /// @throws SnapshotError if it is not such
+  /// @throws SnapshotError if the numbers are not such a state
   void SetMemory(const std::vector<double>& memory);
 
  private:

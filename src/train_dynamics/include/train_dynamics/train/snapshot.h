@@ -9,11 +9,11 @@
 
 namespace train_dynamics {
 
-/// The state of one vehicle as numbers: how many, and which, is the vehicle's own business.
+/// The state of one vehicle as numbers: the vehicle alone defines how many and which.
 using StateRow = std::vector<double>;
 
-/// The state of a contiguous block of vehicles at the beginning of an exchange: all that their further motion
-/// depends on, but for their parameters.
+/// The state of a contiguous block of vehicles at the beginning of an exchange: all that their further motion depends
+/// on, except their parameters.
 struct BlockSnapshot {
   std::uint64_t exchange = 0;    ///< the next one
   std::uint64_t first = 0;       ///< index of the block's first vehicle in the train
@@ -29,7 +29,7 @@ struct TimeZero {
 /// The state of a whole train and of its books at the beginning of an exchange. Vehicles are not tied to the
 /// ranks that they were in.
 struct TrainCheckpoint {
-  std::string scenario;            ///< what it is of, word for word; its first line is "# PROGRAM VERSION"
+  std::string scenario;            ///< its text, verbatim; its first line is "# PROGRAM VERSION"
   std::uint64_t exchange = 0;      ///< the next one; follows a record
   std::uint64_t state_digest = 0;  ///< chained over all records so far
   TimeZero at_time_zero;
@@ -41,10 +41,10 @@ struct TrainCheckpoint {
   std::vector<double> driver;           ///< CommandSchedule::Memory
   std::vector<double> built_in_driver;  ///< BuiltInDriverState::ForEachField; empty without one
   std::vector<double> summary;          ///< RunSummary::Memory
-  Bytes output;                         ///< what the recorders of the run need to go on
+  Bytes output;                         ///< what the run's recorders need to continue
 };
 
-/// @throws SnapshotError if there is not a row for each of so many vehicles
+/// @throws SnapshotError unless there is one row per vehicle
 void CheckRows(const std::vector<StateRow>& rows, int vehicles);
 
 /// As bytes: a mark, the format's version, the contents (little-endian, counts before arrays), a checksum.
@@ -56,7 +56,7 @@ Bytes Encode(const TrainCheckpoint& checkpoint);
 BlockSnapshot DecodeBlockSnapshot(const Bytes& bytes);
 TrainCheckpoint DecodeTrainCheckpoint(const Bytes& bytes);
 
-/// Collects numbers; of a list of fields that is written once for saving and for restoring.
+/// Collects the numbers of a list of fields, which serves for saving and for restoring.
 class MemoryWriter {
  public:
   void operator()(double value) { numbers_.push_back(value); }

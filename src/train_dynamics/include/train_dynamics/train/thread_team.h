@@ -15,8 +15,8 @@ namespace train_dynamics {
 int UsableCores();
 
 /// A fixed team of threads that runs the same task side by side, thousands of times a second; or, where that takes
-/// longer because the machine has other work, one after the other in the calling thread (see FasterWay). What a thread
-/// has not begun when the caller is done with its own part, because it waits for a core, the caller does, too.
+/// longer because the machine has other work, one after the other in the calling thread (see FasterWay). When the
+/// caller has done its own part, it also does the parts that threads have not begun because they wait for a core.
 ///
 /// Waiting spins for as long as it takes to wake a thread, then sleeps, so that neither a busy train nor an idle one
 /// wastes a core.
@@ -35,7 +35,7 @@ class ThreadTeam {
  private:
   static constexpr int kTogether = 0;  ///< a way; the other: alone
 
-  /// Whose the task of a member is in each round.
+  /// Which thread takes the task of a member in each round.
   struct alignas(64) Claim {
     std::atomic<unsigned> round{0};  ///< the last one in which a thread took it
   };

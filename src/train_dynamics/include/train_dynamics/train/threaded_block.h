@@ -9,8 +9,8 @@ namespace train_dynamics {
 
 class ThreadTeam;
 
-/// How many of `threads` threads make the vehicles [first, first + count) of a scenario's train faster: a barrier costs
-/// about as much as eight wagons (a pack of lanes), or a thousand LTD vehicles.
+/// The number of threads, up to `threads`, that speeds up the vehicles [first, first + count) of a scenario's train: a
+/// barrier costs about as much as eight wagons (a pack of lanes), or a thousand LTD vehicles.
 int UsefulThreads(const ScenarioParams& scenario, int first, int count, int threads);
 
 /// A block whose vehicles are shared out over a fixed number of threads, in smaller blocks of about equal work.
@@ -19,7 +19,7 @@ int UsefulThreads(const ScenarioParams& scenario, int first, int count, int thre
 class ThreadedBlock : public VehicleBlock {
  public:
   /// The vehicles [first, first + count) of a scenario's train at their start state.
-  /// @param threads  1 = the caller's only; more than vehicles is as many as vehicles
+  /// @param threads  1 = the caller's only; at most one per vehicle is used
   ThreadedBlock(const ScenarioParams& scenario, const Consist& consist, int first, int count, int threads);
   ~ThreadedBlock() override;
 

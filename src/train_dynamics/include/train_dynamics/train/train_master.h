@@ -27,10 +27,10 @@ struct TrainRecord {
   double mean_speed_mps = 0.0;   ///< of the vehicles' momentum
   double mean_position_m = 0.0;  ///< of the vehicles' masses
   VehicleRecords vehicles;
-  std::vector<SlideEvent> slides;  ///< that have ended since the last record; with a ledger, those that go on, too
-  std::vector<double> acceleration_mps2;     ///< [vehicle] mean over the record interval; NaN at time 0
-  LoadArrays held;                           ///< the loads of the interval that ended
-  std::vector<double> coupler_extension_m;   ///< [connection]
+  std::vector<SlideEvent> slides;           ///< that have ended since the last record; with a ledger, also ongoing ones
+  std::vector<double> acceleration_mps2;    ///< [vehicle] mean over the record interval; NaN at time 0
+  LoadArrays held;                          ///< the loads of the interval that ended
+  std::vector<double> coupler_extension_m;  ///< [connection]
   std::vector<double> cylinder_pressure_pa;  ///< [vehicle] at time_s
   BrakeRecordArrays brake;                   ///< [vehicle] at time_s; empty where the brake has none of it
   std::uint64_t state_digest = 0;            ///< chained over all records so far
@@ -44,7 +44,7 @@ struct TrainRecord {
 
 /// Steps a train: computes what acts between its vehicles, exchange by exchange, and keeps the books.
 ///
-/// Knows nothing of where the vehicles are; the transport does.
+/// Where the vehicles are computed is known to the transport only.
 class TrainMaster {
  public:
   using Observer = std::function<void(const TrainRecord&)>;
@@ -57,14 +57,14 @@ class TrainMaster {
 
   /// Brings the vehicles to time 0 and shows the first record.
   void Start();
-  /// Brings the vehicles and the books to the state of a checkpoint instead. Its record has been shown.
+  /// Brings the vehicles and the books to the state of a checkpoint instead. Its record is not shown again.
   /// @throws SnapshotError if the checkpoint is not one of such a train
   void Resume(const TrainCheckpoint& checkpoint);
-  /// Whether checkpoints can be asked for; known once it has started.
+  /// Whether checkpoints can be requested; known after the start.
   bool GivesCheckpoints() const { return transport_.GivesSnapshots(); }
-  /// Lets the next exchange leave a checkpoint. May be called before one that ends with a record.
+  /// Requests a checkpoint of the next exchange, which must be one that ends with a record.
   void AskForCheckpoint();
-  /// The checkpoint that the last exchange has left, without what only its caller knows: scenario and summary.
+  /// The checkpoint of the last exchange, without scenario and summary, which the caller adds.
   TrainCheckpoint Checkpoint() const;
   /// Whether the next exchange ends with a record.
   bool RecordIsNext() const { return (exchange_ + 1) % scenario_.ExchangesPerRecord() == 0; }
@@ -72,16 +72,16 @@ class TrainMaster {
   /// One exchange: the train moves on by one exchange interval.
   /// @throws SimulationFault naming the vehicle, the quantity and the time
   void Exchange();
-  /// The driver does this at the start of the next exchange. The vehicles of the command and its notch must be checked,
-  /// see JudgeLocomotiveCommand.
+  /// Gives a command for the start of the next exchange. The vehicles of the command and its notch must be checked, see
+  /// JudgeLocomotiveCommand.
   /// @throws std::invalid_argument if the brake cannot obey, or for a patch of rail too many; then nothing has changed
   void Command(const DriverCommand& command);
-  /// Patches of rail that have come or will come on the way: at most kMostPatchesOnTheWay.
+  /// Number of patches of rail that are added during the run, past and future: at most kMostPatchesOnTheWay.
   std::size_t patches() const { return patches_; }
   const CommandSchedule& schedule() const { return schedule_; }
   /// What a driver sees at the start of the next exchange, commands that are given there not included.
   /// @param ahead_m            distance over which the driver knows the line, from the front of the train; >= 0
-  /// @param is_shown_couplers  whether the driver is shown the forces in all couplers, as no cab does
+  /// @param is_shown_couplers  whether the view has the forces in all couplers, which no cab shows
   const DriverView& View(double ahead_m, bool is_shown_couplers = false);
 
   long exchanges() const { return scenario_.Exchanges(); }  ///< of the whole run, if `until` does not end it
@@ -102,7 +102,7 @@ class TrainMaster {
 
  private:
   void ShowRecord();
-  /// Tells the brake of connections that have broken since it was told last.
+  /// Reports the connections that have broken since the last call to the brake.
   void OpenPipes();
   /// The built-in driver with what it knows and remembers.
   struct Driver {
@@ -112,7 +112,7 @@ class TrainMaster {
     BuiltInDriverState state;
   };
   bool DriverIsDue() const { return driver_ && exchange_ % driver_->period == 0; }
-  /// Tells the brakes of locomotives what their dynamic brakes did over the last exchange.
+  /// Gives the locomotives' brakes the efforts of their dynamic brakes over the last exchange.
   void Blend();
   void GiveCommands();
   void Give(const GivenCommand& given);

@@ -7,9 +7,9 @@
 
 #include "train_dynamics/vehicle/vehicle_model.h"
 
-/// Lists of what travels between a vehicle and the master of its train. Each list stands once, as a macro
-/// LIST(X) that names its fields; the structs that hold them and all that fills, sends, checks, stores and
-/// compares them are made from it.
+/// The lists of the data exchanged between a vehicle and the master of its train. Each list exists once, as a macro
+/// LIST(X) that names its fields; the structs that hold them, and the code that fills, sends, checks, stores and
+/// compares them, are made from it.
 namespace train_dynamics {
 
 /// Where a recorded quantity has a value; elsewhere it is NaN.
@@ -25,10 +25,10 @@ constexpr bool IsComputed(Presence presence, VehicleModel model, bool has_moved)
          (has_moved && (presence == Presence::kAfterStep || model == VehicleModel::kTwoD));
 }
 
-/// Whether master and vehicles tell each other a load in every exchange.
+/// Whether a load is part of every exchange between master and vehicles.
 enum class Given {
   kAlways,
-  kWhereUsed,  ///< an array without numbers stands for zero on all vehicles
+  kWhereUsed,  ///< an empty array means zero on all vehicles
 };
 
 /// A field of a list, as people read it.
@@ -36,7 +36,7 @@ struct FieldInfo {
   const char* name;  ///< of the field in every struct and message
   const char* unit;
   const char* meaning;
-  int numbers;  ///< of each vehicle; those of one vehicle stand side by side
+  int numbers;  ///< of each vehicle; those of one vehicle are adjacent
 };
 
 /// `n` numbers, or one that needs no index.

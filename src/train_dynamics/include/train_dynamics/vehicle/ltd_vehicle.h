@@ -14,7 +14,7 @@
 namespace train_dynamics {
 
 /// Equivalent rotational mass of a vehicle [kg] (paper Eq 8, per wheelset): m_e = n_wheelsets J / r^2, and
-/// n_driven J_drive / r^2 of a locomotive's drives; of a vehicle that is one mass as given.
+/// n_driven J_drive / r^2 of a locomotive's drives; for a vehicle that is one mass, the value given.
 ///
 /// Enters the inertia only, never weight, resistance or the force of the grade.
 inline double EquivalentRotationalMass(const VehicleParams& p) {
@@ -25,7 +25,7 @@ inline double EquivalentRotationalMass(const VehicleParams& p) {
                     : of_wheelsets;
 }
 
-/// How the one degree of freedom is stepped.
+/// Time integration of the one degree of freedom.
 ///
 /// Both use the forces of paper Eq 1 once per step and are symplectic; they sample the same trajectory half a
 /// step apart.
@@ -47,13 +47,13 @@ static_assert(offsetof(LtdState<double>, x_m) == 1 * sizeof(double) &&
                   offsetof(LtdState<double>, v_mps) == 2 * sizeof(double),
               "LtdVehicle::kDigestedFields counts the numbers before x_m and v_mps");
 
-/// What an LTD vehicle shows of its last step, for records.
+/// Output of the last step of an LTD vehicle, for records.
 template <class T>
 struct LtdOutput {
   T shoe_force_n{};  ///< of all shoes, as far as it acts; backwards positive
 };
 
-/// A vehicle of conventional longitudinal train dynamics: one degree of freedom. What is constant in it.
+/// Constants of a vehicle of conventional longitudinal train dynamics: one degree of freedom.
 struct LtdVehicle {
   /// @throws std::invalid_argument when the parameters violate their rules
   LtdVehicle(const VehicleParams& params, bool with_rotational_inertia, LtdIntegrator method = LtdIntegrator::kLeapfrog,
@@ -96,7 +96,7 @@ void StepLtd(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T
 inline bool IsPlain(const LtdVehicle& vehicle, const Track& track) {
   return vehicle.brake_rigging.is_plain && !vehicle.adhesion_limit && track.grades().IsConstant();
 }
-/// StepLtd, of which kAll = false leaves out what plain vehicles do not have, at the same bits.
+/// StepLtd; kAll = false leaves out what plain vehicles do not have, with the same bits.
 template <bool kAll, class T>
 void StepLtdWith(const LtdVehicle& vehicle, const Track& track, const VehicleLoads<T>& loads, double dt, LtdState<T>& s,
                  LtdOutput<T>* output);

@@ -10,8 +10,8 @@
   X(vehicle, "1", "number of the vehicle in the train, from 1")                                         \
   X(wheelset, "1", "number of the wheelset in the vehicle, from 1 at its front")                        \
   X(start_s, "s", "when the creepage rose above 0.3")                                                   \
-  X(end_s, "s", "when it fell below; of a slide that still goes on: the time of this message")          \
-  X(is_over, "1", "1; 0 of a slide that still goes on")                                                 \
+  X(end_s, "s", "when it fell below; of an ongoing slide: the time of this message")                    \
+  X(is_over, "1", "1; 0 of an ongoing slide")                                                           \
   X(start_m, "m", "position of the wheelset along the track at its start")                              \
   X(end_m, "m", "... at its end")                                                                       \
   X(slid_m, "m", "distance the tread slid over the rail, >= 0")                                         \
@@ -55,8 +55,8 @@ void ForEachSlideField(Function&& function, Structs&... structs) {
 }
 #undef TRAIN_DYNAMICS_CALL
 
-/// Slides of one wheelset for which memory that is shared with the master has room. Records that tell of more, those of
-/// intervals beyond half a second, travel by TCP.
+/// Slides of one wheelset for which memory that is shared with the master has room. Records with more slides (of
+/// intervals above half a second) are sent by TCP.
 inline constexpr int kSharedSlidesPerWheelset = 4;
 
 }  // namespace train_dynamics

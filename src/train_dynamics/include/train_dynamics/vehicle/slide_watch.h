@@ -8,8 +8,8 @@
 
 namespace train_dynamics {
 
-/// Follows the wheelsets of a batch and tells their slides. Looks at the end of every exchange, vehicle by vehicle, but
-/// only where a wheel of the batch slides: what it finds depends on each vehicle alone.
+/// Monitors the wheelsets of a batch and reports their slides. Evaluated at the end of every exchange, vehicle by
+/// vehicle, but only if a wheel of the batch slides; the result depends on each vehicle alone.
 template <class Vehicle>
 class SlideWatch {
  public:
@@ -23,15 +23,15 @@ class SlideWatch {
   /// The state at the end of an exchange. @param interval_s  its length
   void Follow(double time_s, double interval_s, const VehicleBatch<Vehicle>& batch);
 
-  /// Appends the slides that have ended since it was asked last, of each vehicle in turn.
+  /// Appends the slides that have ended since the last call, of each vehicle in turn.
   /// @param first    number of the batch's first vehicle in the train, from 1
-  /// @param ongoing  those that go on, too, as they are now
+  /// @param ongoing  also the ongoing ones, as they are now
   void Tell(int first, bool ongoing, double time_s, const VehicleBatch<Vehicle>& batch,
             std::vector<SlideEvent>& slides);
 
-  /// What of a vehicle must be kept: no numbers where no wheelset slides.
+  /// Appends the state of a vehicle: no numbers if no wheelset slides.
   void Save(int i, std::vector<double>& row) const;
-  /// @return whether they were such numbers
+  /// @return whether the numbers are such a state
   bool Restore(int i, const double* numbers, std::size_t count);
 
   static constexpr int kSharedNumbers() { return kWheelsets * (kFollowed + kSharedSlidesPerWheelset * kSlideNumbers); }
@@ -49,7 +49,7 @@ class SlideWatch {
   static constexpr int kFollowed = sizeof(Followed) / sizeof(double);
   struct PerVehicle {
     std::array<Followed, kWheelsets> wheelset;
-    std::vector<SlideEvent> ended;  ///< not told yet
+    std::vector<SlideEvent> ended;  ///< not reported yet
   };
   struct Motion;
 

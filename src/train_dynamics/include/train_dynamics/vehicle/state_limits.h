@@ -1,6 +1,6 @@
 #pragma once
 
-/// Limits beyond which a vehicle has left every law's domain.
+/// Limits beyond which a vehicle is outside the domain of every law.
 namespace train_dynamics::state_limits {
 
 inline constexpr double kSpeed = 300.0;      ///< of any body [m/s]

@@ -9,8 +9,8 @@
 
 namespace train_dynamics {
 
-/// Vehicles of one type in packs of lanes. The last pack is filled up with copies of its first vehicle, which
-/// do what that does; they are never read.
+/// Vehicles of one type in packs of lanes. The last pack is filled up with copies of its first vehicle, which are never
+/// read.
 template <class Vehicle>
 class VehicleBatch {
  public:

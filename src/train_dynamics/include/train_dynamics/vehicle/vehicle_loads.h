@@ -7,7 +7,7 @@
 
 #include "train_dynamics/vehicle/field_list.h"
 
-/// What acts on a vehicle from outside its own equations, but for its couplers:
+/// The loads on a vehicle that do not follow from its own equations, except its couplers:
 ///   X(name, unit, given, meaning)
 /// In messages: the arrays of this name in Step.srv. A load that is given only where it is used costs a train without
 /// it an empty array.

@@ -39,7 +39,7 @@ struct VehicleReply {
 struct ReplyArrays {
   TRAIN_DYNAMICS_VEHICLE_REPLY(TRAIN_DYNAMICS_ARRAY)
 };
-/// From the place of one vehicle on.
+/// Where the numbers of one vehicle begin; those of the vehicles behind it follow.
 struct ReplyPlaces {
   TRAIN_DYNAMICS_VEHICLE_REPLY(TRAIN_DYNAMICS_POINTER)
 };
@@ -52,7 +52,7 @@ struct VehicleRecord {
 struct RecordArrays {
   TRAIN_DYNAMICS_VEHICLE_RECORD(TRAIN_DYNAMICS_ARRAY)
 };
-/// From the place of one vehicle on.
+/// Where the numbers of one vehicle begin; those of the vehicles behind it follow.
 struct RecordPlaces {
   TRAIN_DYNAMICS_VEHICLE_RECORD(TRAIN_DYNAMICS_POINTER)
 };

@@ -93,7 +93,7 @@ static_assert(offsetof(WagonState<double>, position) == sizeof(double) &&
                       offsetof(WagonState<double>, position) + 3 * kBodies * sizeof(double),
               "Wagon::kDigestedFields counts the numbers before positions and velocities");
 
-/// What a wagon shows of its last step, for records.
+/// Output of the last step of a wagon, for records.
 template <class T, int kPerBogie = 2>
 struct WagonOutput {
   using PerWheelset = std::array<T, kWheelsetsOf<kPerBogie>>;
@@ -341,7 +341,7 @@ struct OverRail {
 
 /// The rail under a wheelset is at its wheels; the rail under a bogie (its bolster and frame) is the line between those
 /// under its outer wheelsets, the rail under the carbody the line between the middles of those under its bogies. A
-/// pitch counts from the pitch of that line; that of a wheelset is its rotation and counts from nowhere.
+/// pitch counts from the pitch of that line; that of a wheelset is its rotation and has no reference.
 template <class T, int kPerBogie>
 OverRail<T, kPerBogie> OverRailOf(const BogieVehicle<kPerBogie>& w, const Track& track,
                                   const WagonState<T, kPerBogie>& s) {
@@ -371,8 +371,8 @@ OverRail<T, kPerBogie> OverRailOf(const BogieVehicle<kPerBogie>& w, const Track&
   return over;
 }
 
-/// Whether every body is where and as fast as a body can be; false for anything that is not a number. Heights and
-/// pitches count from the rail, so that a train in a deep, gentle valley is sound.
+/// Whether every body's position and speed are within state_limits; false for NaN. Heights and pitches count from the
+/// rail, so that a train in a deep, gentle valley is sound.
 template <class T, int kPerBogie>
 MaskOf<T> IsSound(const BogieVehicle<kPerBogie>& w, const Track& track, const WagonState<T, kPerBogie>& s) {
   const OverRail<T, kPerBogie> over = OverRailOf(w, track, s);

@@ -174,7 +174,7 @@ void Kick(const BogieVehicle<kPerBogie>& w, const BodyVector<T, kPerBogie>& forc
   }
 }
 
-/// What acts on the wagon from outside in a step.
+/// External loads on the wagon in a step.
 template <class T>
 struct OuterForces {
   T grade;              ///< of the track [-]
@@ -238,7 +238,7 @@ void AddOuterForces(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& oute
 template <class T, int kPerBogie = 2>
 struct ShoeForces {
   std::array<T, kWheelsetsOf<kPerBogie>> turning;   ///< on the wheels as they turn
-  std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels that stand, >= turning
+  std::array<T, kWheelsetsOf<kPerBogie>> standing;  ///< the most on wheels at rest, >= turning
 };
 
 /// The same by any rigging and law of friction, and where each wheelset has a cylinder pressure of its own.
@@ -283,7 +283,7 @@ ShoeForces<T, kPerBogie> ShoeForcesOn(const BogieVehicle<kPerBogie>& w, const Ou
   return shoes;
 }
 
-/// What a step made of the wheelsets.
+/// Result of a step for the wheelsets.
 template <class T, int kPerBogie = 2>
 struct WheelsetStep {
   ShoeForces<T, kPerBogie> shoes;
@@ -344,7 +344,7 @@ WheelsetStep<T, kPerBogie> StepWheelsets(const BogieVehicle<kPerBogie>& w, const
     T push = force.x[b] - rail.normal[i] * rail.slope[i];
     T traction = outer.traction, others = outer.rolling + outer.dynamic_brake;
     if (kAll) {
-      // Set-valued at rest: what would bring the wheelset, the creep force aside, to a stand, as far as it goes.
+      // Set-valued at rest: the force that stops the wheelset, the creep force excluded, up to its limit.
       curving[i] = Clamp(w.mass_kg[b] * (1.0 / dt) * v0.x[b] + push, -outer.curving, outer.curving);
       push = push - curving[i];
       traction = w.driven[i] * outer.traction;
@@ -463,7 +463,7 @@ void BookTorques(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,
   }
 }
 
-/// Books the work of a step but for the torques: force x mean rate x dt, element by element.
+/// Books the work of a step, except the torques': force x mean rate x dt, element by element.
 /// @param dissipative  forces of the dampers and of the wedges' friction
 template <bool kAll, class T, int kPerBogie>
 void BookWork(const BogieVehicle<kPerBogie>& w, const OuterForces<T>& outer,

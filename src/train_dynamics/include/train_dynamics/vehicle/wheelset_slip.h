@@ -15,7 +15,7 @@ struct RollingInput {
   T spin;             ///< omega at the start of the step [rad/s]
   T traction_torque;  ///< [Nm], forward positive
   T brake_torque;     ///< largest torque that brakes and resistance can exert on the turning wheels [Nm], >= 0
-  T holding_torque;   ///< the same on wheels that stand [Nm], >= brake_torque
+  T holding_torque;   ///< the same on wheels at rest [Nm], >= brake_torque
   T slip;             ///< w at the start of the step [m/s]: where the search for that at the end begins
 };
 
@@ -68,15 +68,15 @@ MaskOf<T> IsOnTheWay(const T& w, const T& next) {
 ///
 /// F rises from 0 to at most N mu0 and its slope falls: w lies above w0 - h N mu0, and Newton's iterates, whatever the
 /// guess, do not pass it. They climb, held at or above that bound and 0. (With friction that falls over the slip speed
-/// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has arrived when its
+/// the slope may turn negative, h |F'| < 0.1: they are held at or below w0 too.) A wheelset has converged when its
 /// iterate moved by less than a thousandth of itself: by Taylor's theorem F is then wrong by w^2 F'' 1e-6 / 2, less
 /// than 1e-6 N mu0, towards too much force (or, where friction falls, by up to 2.7e-7 (1 - A) N mu0 towards too
 /// little). From the slip of the step before, that takes a rolling wheelset one iteration, seldom two. The force
 /// returned is (w0 - w) / h: whatever error is left in w, momentum and energy are exact.
 ///
 /// Several wheelsets are solved side by side, in each lane of T too: an iteration waits for the one before, but not for
-/// those of the others. One that has arrived stays where it is while others go on, so that its result does not depend
-/// on them.
+/// those of the others. One that has converged stays fixed while others continue, so that its result does not depend on
+/// them.
 /// @param guess  of w, with its sign; it decides how soon w is found
 template <class T, std::size_t kCount, class P = double>
 std::array<SlipSolution<T>, kCount> SolveSlip(const std::array<CreepLaw<T, P>, kCount>& law,

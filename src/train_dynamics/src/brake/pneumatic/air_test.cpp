@@ -11,7 +11,7 @@ constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPsi = 6894.76;
 constexpr double kLookEvery = 0.05;  // [s]
 
-/// The brake with its cylinders, as of the last time asked for.
+/// The brake and its cylinders at the last time queried.
 class Bench {
  public:
   Bench(const PneumaticBrakeParams& params, const std::vector<double>& length_m) : brake(params, length_m) {}
@@ -20,7 +20,7 @@ class Bench {
     brake.PressuresAt(to_s, cylinder_pa);
     now_s_ = to_s;
   }
-  /// Runs until `done(*this)`. @return the time that took, kNever if it was not so within `patience_s`
+  /// Runs until `done(*this)`. @return the time until then; kNever if it is more than `patience_s`
   template <class Done>
   double Until(const Done& done, double patience_s) {
     const double begin_s = now_s_;
@@ -133,7 +133,7 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params, cons
   fall.Run(180.0);
   const double before = fall.brake.TailPressure();
   fall.Run(240.0);
-  // Four minutes have passed since the reduction: a pipe that is empty by then falls no more, but has.
+  // Four minutes have passed since the reduction: a pipe that is empty by then no longer falls, but has fallen.
   const double tail_pa = fall.brake.TailPressure();
   const double lost = std::max(before - tail_pa, (charged_pa - 100e3 - tail_pa) / 4.0);
   table.Add("leakage: tail's fall in a minute of lap", lost / 1e3, "kPa", "at most 34.5 kPa, 5 psi [M: 49 CFR 232.205]",
@@ -179,7 +179,7 @@ std::vector<AirTestResult> TestAirBrake(const PneumaticBrakeParams& params, cons
   const bool pneumatic =
       std::all_of(valves.begin(), valves.end(), [&](int v) { return train.valves[v].kind != ControlValveKind::kEcp; });
   const bool head_only = train.sources.size() == 1;
-  // Over the first vehicles the wave builds up, and the closed tail reflects it: a short train tells no speed.
+  // Over the first vehicles the wave builds up, and the closed tail reflects it: a short train gives no speed.
   const int first = std::max(20, n / 4);
   if (n >= 50 && pneumatic && head_only && reached == n) {
     double way = 0.0;

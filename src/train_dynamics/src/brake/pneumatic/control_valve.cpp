@@ -10,8 +10,8 @@ constexpr double kDischarge = 0.8;                  ///< of every opening [A]
 constexpr double kHighRetainedPa = 20.0 * 6894.76;  ///< [S]
 constexpr double kLowRetainedPa = 10.0 * 6894.76;   ///< [S]
 constexpr double kSlowDirectOpeningM = 1.45e-3;     ///< empties a cylinder in some 86 s [S: the time]
-/// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: a train that
-/// is being charged may fall below it by what its own reservoirs take [A].
+/// Above an ECP valve's emergency pressure, which the pipe must have had before its loss is an emergency: while a train
+/// is charged, its own reservoirs may draw the pipe below that pressure [A].
 constexpr double kEcpArmedAbovePa = 135e3;
 constexpr double kLnTenAndAHalf = 2.3513752571634776;
 

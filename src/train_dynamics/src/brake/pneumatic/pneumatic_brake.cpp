@@ -38,8 +38,8 @@ double StepFor(const PipeGrid& grid, double longest_s) {
 }
 
 // p V that a relay lets through in dt: it opens in proportion to the pressure that is still wanted, fully at
-// kRelayBand. The opening follows inside the step (implicitly), or it would hunt in a short cell: x = fully open /
-// band, change = error x / (1 + x), at most fully open.
+// kRelayBand. The opening follows within the step (implicitly); otherwise it would oscillate in a short cell: x = fully
+// open / band, change = error x / (1 + x), at most fully open.
 double RelayFlow(double conductance_rt, double dt_s, double from_pa, double to_pa, double error_pa, double volume_m3) {
   if (!(from_pa > to_pa)) return 0.0;
   const double fully = conductance_rt * dt_s * from_pa * NozzleFunction(to_pa / from_pa) / volume_m3;
@@ -254,7 +254,7 @@ PneumaticBrake::PneumaticBrake(const PneumaticBrakeParams& params, const std::ve
     const int vehicle = VehicleIndex(source.vehicle, vehicles);
     if (vehicle < 0 || vehicle >= vehicles)
       throw std::invalid_argument("source " + source.name + " is outside the train");
-    // The driver's valve and an end-of-train device stand at the ends of their vehicles.
+    // The driver's valve and an end-of-train device are at the ends of their vehicles.
     const int in_vehicle = vehicle == 0 ? 0 : vehicle == vehicles - 1 ? cells - 1 : cells / 2;
     source_cell_.push_back(vehicle * cells + in_vehicle);
     sources_.push_back(told);
@@ -281,7 +281,7 @@ void PneumaticBrake::TrapAir(int vehicle, double pressure_pa) {
 
 void PneumaticBrake::Send(SourceState& source, double now_s, double delay_s, const BrakeCommand& command) const {
   CommandsUnderWay& way = source.under_way;
-  // What cannot be held any more is overtaken by the newest.
+  // If the queue is full, the newest command replaces the last one.
   const int at = std::min(static_cast<int>(way.count), CommandsUnderWay::kMost - 1);
   way.entries[at] = {now_s + delay_s, static_cast<double>(command.kind),
                      command.kind == BrakeCommandKind::kApply ? command.reduction_kpa * 1e3 : 0.0};
@@ -334,7 +334,7 @@ void PneumaticBrake::Receive(SourceState& source, double now_s) const {
   }
 }
 
-// The equalising reservoir on its way to its goal; overcharged after a release, and slowly down from there.
+// The equalising reservoir moves to its goal; after a release it is overcharged, and falls slowly from there.
 void PneumaticBrake::Equalise(SourceState& source, double now_s) const {
   const DriversValveParams& valve = params_.drivers_valve;
   const double charged_pa = params_.charged_pressure_kpa * 1e3;
@@ -371,8 +371,8 @@ void PneumaticBrake::StepSource(int i) {
     out = PassToPlace(emergency_, dt_s_, pressure, volume, kAtmospherePa);
   } else {
     Equalise(source, now_s);
-    // A remote valve that has heard nothing for so long laps: it feeds less and less, or the end of its flow would be a
-    // fall of the pipe beside it that is an emergency's.
+    // A remote valve without radio for this long goes to lap: it reduces its flow gradually, because a sudden end of
+    // the flow would lower the pipe beside it at an emergency's rate.
     double lapped_s = 0.0;
     if (p.kind == PipeSourceKind::kRemote && p.RadioIsLost(now_s))
       lapped_s = Max(0.0, now_s - *p.radio_lost_from_s - kRadioPatience);

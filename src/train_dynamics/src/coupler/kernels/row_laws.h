@@ -4,7 +4,7 @@
 
 #include "train_dynamics/coupler/row_kernels.h"
 
-/// As connection_laws.h. The packs are those that the compiler forms; T only tells the instances apart.
+/// As connection_laws.h. The packs are those that the compiler forms; T only distinguishes the instances.
 namespace train_dynamics {
 
 /// Calls loop(stride); with the strides of most trains as constants, over which the compiler forms packs.

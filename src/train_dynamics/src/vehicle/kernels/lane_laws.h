@@ -120,8 +120,8 @@ TRAIN_DYNAMICS_FLATTEN bool StepPacksUnder(const Vehicle& vehicle, const Track& 
   return AllOf(sound);
 }
 
-/// The same, told that no store changes vehicle or track: what is constant in an LTD vehicle stays in registers. A
-/// wagon has too much of it, which would push its state out.
+/// The same, but the compiler knows that no store changes vehicle or track: the constants of an LTD vehicle stay in
+/// registers. A wagon has too many of them, which would displace its state.
 template <class T, bool kAll>
 TRAIN_DYNAMICS_FLATTEN bool StepLtdPacks(const LtdVehicle& __restrict vehicle, const Track& __restrict track, double dt,
                                          int steps, Packs packs, const LoadPlaces& loads, const ReplyPlaces& reply,

@@ -38,7 +38,7 @@ inline double NozzleFlow(double conductance, double p1_pa, double p2_pa) {
 }
 
 /// p V [J] that passes in dt from (p1, V1) to (p2, V2), at most what makes both pressures equal: an opening between two
-/// vessels never overshoots, however long the step. Both pressures take their share at once. Mass is p V / (R T).
+/// vessels never overshoots, however long the step. Both pressures are updated. Mass is p V / (R T).
 ///
 /// @param conductance_rt  conductance times R T [m3/s]
 /// @return p V that passed, >= 0; nothing passes unless p1 > p2 (a check valve)
@@ -57,8 +57,8 @@ inline double Pass(double conductance_rt, double dt_s, double& p1_pa, double v1_
                         : -PassOneWay(conductance_rt, dt_s, p2_pa, v2_m3, p1_pa, v1_m3);
 }
 
-/// p V [J] that passes in dt from a vessel to a place whose pressure stays (the atmosphere, a main reservoir), or,
-/// where that has more, nothing; at most what makes the pressures equal.
+/// p V [J] that passes in dt from a vessel to a place of constant pressure (the atmosphere, a main reservoir): at most
+/// what equalises the pressures, nothing if the place has the higher one.
 inline double PassToPlace(double conductance_rt, double dt_s, double& p_pa, double v_m3, double place_pa) {
   if (!(p_pa > place_pa)) return 0.0;
   const double pv = Min((p_pa - place_pa) * v_m3, conductance_rt * dt_s * p_pa * NozzleFunction(place_pa / p_pa));
@@ -66,7 +66,7 @@ inline double PassToPlace(double conductance_rt, double dt_s, double& p_pa, doub
   return pv;
 }
 
-/// p V [J] that passes in dt from a place whose pressure stays to a vessel; else as above.
+/// p V [J] that passes in dt from a place of constant pressure to a vessel; otherwise as above.
 inline double PassFromPlace(double conductance_rt, double dt_s, double place_pa, double& p_pa, double v_m3) {
   if (!(place_pa > p_pa)) return 0.0;
   const double pv = Min((place_pa - p_pa) * v_m3, conductance_rt * dt_s * place_pa * NozzleFunction(p_pa / place_pa));

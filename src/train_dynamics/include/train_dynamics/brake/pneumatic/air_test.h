@@ -7,7 +7,7 @@
 
 namespace train_dynamics {
 
-/// A line of the tests that a train's air brake is given before it runs.
+/// One result of the air-brake tests that are made before a train runs.
 struct AirTestResult {
   std::string test;
   double value;
@@ -19,11 +19,12 @@ struct AirTestResult {
 /// The tests of a test track, each on the train at rest, with this brake:
 ///
 ///   single car         one vehicle with the second vehicle's valve: application of 70 kPa, its hold, its release
-///   charging           the empty train until the tail has 95 % of the head's goal leakage, gradient  of the charged
-///   train: flow that the driver's valve feeds, head less tail, fall in a minute of lap service            full service
-///   and release: last cylinder, and whether any valve went into emergency emergency          whether all cylinders
-///   filled, and the speed of its front from vehicle 21, or a quarter of the train, to its
-///                      end, of 50 vehicles and more
+///   charging           the empty train until the tail has 95 % of the head's goal
+///   leakage, gradient  of the charged train: flow that the driver's valve feeds, head less tail, fall in a minute of
+///                      lap service
+///   service            full service and release: last cylinder, and whether any valve went into emergency
+///   emergency          whether all cylinders filled, and, of 50 vehicles and more, the speed of its front from
+///                      vehicle 21, or a quarter of the train, to the end
 ///
 /// Rules [M] from memory of 49 CFR 232.205 (5 psi/min; 60 ft3/min and 15 psi) and UIC 540 (250 m/s); the rest [A].
 /// ECP valves answer the train line: their times are those of the goal.

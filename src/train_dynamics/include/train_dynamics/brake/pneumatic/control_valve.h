@@ -16,8 +16,8 @@ enum class ControlValveKind {
 /// Direct release, AB type. Thresholds after the generic car valve of the TPS manual [S]: 0.75, 0.25, 1.75 psi. Its
 /// passages to the cylinder are 1/8 in; here 2.4 mm [A], with which a rack of 150 cars vented at both ends fills all
 /// cylinders to 99 % in the published 16 s (3.2 mm: 11 s). The passages that take air from the pipe in an application
-/// are so small [A] that no row of them makes a fall that an emergency needs (with 3.2 and 1.0 mm the tail of 150
-/// wagons does).
+/// are so small [A] that even many in a row do not lower the pipe fast enough for an emergency (with 3.2 and 1.0 mm the
+/// tail of 150 wagons does).
 struct DirectReleaseParams {
   double apply_kpa = 5.2;
   double lap_kpa = 1.7;
@@ -203,7 +203,7 @@ enum class ControlValveMode {
   kBailedOff  ///< of direct release: lap, with the cylinder open to the atmosphere
 };
 
-/// The air of one vehicle's brake beside the pipe; pressures absolute.
+/// The air of one vehicle's brake, the pipe excluded; pressures absolute.
 struct ControlValveState {
   double auxiliary_pa, emergency_pa, cylinder_pa;
   double quick_service_pa;     ///< in the quick-service volume, or accelerating chamber
@@ -221,14 +221,14 @@ struct ControlValveState {
   void SetMode(ControlValveMode m) { mode = static_cast<double>(static_cast<int>(m)); }
 };
 
-/// Where a retaining valve stands.
+/// Setting of a retaining valve.
 enum class Retainer { kDirect, kHighPressure, kLowPressure, kSlowDirect };
 
-/// What the train line tells every valve that listens.
+/// What the train line sends to every connected valve.
 struct TrainLine {
   double ecp_goal = 0.0;       ///< share of full service, 0 ... 1
   bool ecp_emergency = false;  ///< the goal is an emergency's
-  double ep_pipe_pa = 1e9;     ///< what the pipe shall fall to, absolute; electro-pneumatic assistance only
+  double ep_pipe_pa = 1e9;     ///< target pressure of the pipe, absolute; electro-pneumatic assistance only
   bool ep_emergency = false;
 };
 
@@ -253,12 +253,12 @@ class ControlValve {
   /// @param pipe_pa  of the vehicle's cell, of volume pipe_m3; changed by what the valve takes or vents
   double Step(const TrainLine& line, Retainer retainer, ControlValveState& s, double& pipe_pa, double pipe_m3) const;
 
-  /// A step of a bail-off, before Step: a locomotive's brake is let go while that of the train stays applied. @return p
+  /// A step of a bail-off, before Step: releases a locomotive's brake while that of the train stays applied. @return p
   /// V let out to the atmosphere [J]
   ///
   /// Direct release empties the cylinder, and keeps it empty until the pipe falls further or rises; an emergency fills
-  /// it again when the handle is let go. Graduated release lets its control reservoir down to the pipe, and so lets go
-  /// in its release time; so does ECP, while the handle is held.
+  /// it again when the handle is released. Graduated release lowers its control reservoir to the pipe's pressure, and
+  /// so releases in its release time; so does ECP while the handle is held.
   double BailOff(ControlValveState& s, double pipe_pa) const;
 
   /// p V of all air that the state holds [J].

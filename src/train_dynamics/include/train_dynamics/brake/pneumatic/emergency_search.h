@@ -7,7 +7,7 @@
 
 namespace train_dynamics {
 
-/// A search for undesired emergencies: random commands that none may follow from.
+/// A search for undesired emergencies: random commands, none of which may cause an emergency.
 struct EmergencySearch {
   int trials = 10;
   std::uint32_t seed = 1;

@@ -10,8 +10,8 @@ namespace train_dynamics {
 ///
 ///   f = 64/Re | 0.000137 Re^0.717 from 2000 | 0.13977 Re^-0.11781 from 4000 | 0.04 from 40000     (Abdol-Hamid 1986)
 ///
-/// From a table that is linear in Re between 2000 and 40000, steps of 50: within 3e-4 of the law, but beside its jump
-/// of 0.4 % at 4000, and the same bits everywhere. A constant factor may be given in its place.
+/// From a table that is linear in Re between 2000 and 40000, steps of 50: within 3e-4 of the law, except at its jump of
+/// 0.4 % at 4000, and the same bits everywhere. A constant factor may be given in its place.
 class PipeFriction {
  public:
   PipeFriction();
@@ -32,7 +32,7 @@ class PipeFriction {
   std::vector<double> table_;
 };
 
-/// What does not change of a brake pipe that is cut into cells, numbered from the head.
+/// Constants of a brake pipe that is divided into cells, numbered from the head.
 struct PipeGrid {
   /// @param cell_length_m     of each cell, > 0
   /// @param branch_volume_m3  of the side branches at each cell
@@ -58,7 +58,7 @@ struct PipeFlow {
 
   std::vector<double> pressure_pa;  ///< [cell], absolute
   std::vector<double>
-      mass_flow_kgps;        ///< [face 0 ... cells], towards the rear; at the two ends the caller's, first none
+      mass_flow_kgps;        ///< [face 0 ... cells], towards the rear; at the two ends set by the caller, initially 0
   std::vector<double> open;  ///< [face 0 ... cells], 1 or 0: an angle cock closed, a hose parted
   std::vector<double> momentum_flux;  ///< [cell], M^2/(rho A) [N]: of the step, no state
 };

@@ -128,7 +128,7 @@ struct PipeSourceParams {
               "must be > radio_lost_from_s", {"radio_lost_from_s"});
     }
     if (kind == PipeSourceKind::kEndOfTrain) {
-      v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only tells");
+      v.Flag("two_way", two_way, "whether the device vents in an emergency; false: it only reports");
       v.Number("opening_mm", opening_mm, Range{5.0, 32.0, false, false}, "opening of the device's vent [A]");
     }
     if (kind == PipeSourceKind::kRemote)
@@ -139,7 +139,7 @@ struct PipeSourceParams {
 
 enum class EmptyLoad { kNone, kTwoStep, kProportional };
 
-/// What some vehicles have that others have not.
+/// Brake equipment that only some vehicles have.
 struct BrakeEquipmentParams {
   int from = kRequiredInteger;
   int to = kRequiredInteger;
@@ -173,7 +173,7 @@ struct BrakeEquipmentParams {
     v.Number("change_over_share", change_over_share, kFraction,
              "share of the load below which a two_step device is set to empty");
   }
-  /// Of the cylinder's pressure, what acts on the shoes.
+  /// Share of the cylinder pressure that acts on the shoes [-].
   double PressureShare() const;
 };
 
@@ -224,7 +224,7 @@ struct PneumaticBrakeParams {
     v.Check(!valves.empty(), "valves", "must list at least one valve");
   }
 
-  /// What breaks in a train of so many vehicles.
+  /// The rules that are broken in a train of this many vehicles.
   std::vector<BrokenRule> BrokenRules(const std::vector<BrakeCommand>& commands, int vehicles) const;
   std::vector<Warning> Warnings(const std::vector<BrakeCommand>& commands, int vehicles) const;
   bool ReleasesGradually() const;
@@ -232,7 +232,7 @@ struct PneumaticBrakeParams {
   std::vector<int> ValveOfVehicle(int vehicles) const;
 };
 
-/// Commands to a source that are on their way: a source obeys each once its radio has brought it.
+/// Commands in transmission to a source, which obeys each as soon as its radio has delivered it.
 struct CommandsUnderWay {
   static constexpr int kMost = 8;
   struct Entry {
@@ -248,7 +248,7 @@ struct CommandsUnderWay {
   }
 };
 
-/// What a driver's valve, or the train line, has been told.
+/// Commanded state of a driver's valve or of the train line.
 struct SourceState {
   CommandsUnderWay under_way;
   double goal_pa;        ///< of the equalising reservoir, gauge
@@ -268,31 +268,31 @@ struct SourceState {
 };
 
 /// The brake pipe of a train with its valves, stepped on a fixed grid of times t_k = k dt, dt <= 5 ms and at most half
-/// of what a wave needs for a cell, whatever is asked for. In a step: commands that have arrived, the air in the pipe,
-/// leakage, sources, valves in vehicle order. Cylinder pressures between two grid times are linear.
+/// the time in which a wave crosses a cell, whatever times are queried. In a step: commands that have arrived, the air
+/// in the pipe, leakage, sources, valves in vehicle order. Cylinder pressures between two grid times are linear.
 ///
 /// Left out: temperature; the locomotives' compressors; hand brakes; piston travel over wear.
 class PneumaticBrake {
  public:
   /// @param vehicle_length_m  of each vehicle, front to rear, > 0
   /// @param commands  the driver's, times ascending; others may come by Command()
-  /// @throws std::invalid_argument naming what does not suit the train
+  /// @throws std::invalid_argument if a parameter does not suit the train; names it
   PneumaticBrake(const PneumaticBrakeParams& params, const std::vector<double>& vehicle_length_m,
                  std::vector<BrakeCommand> commands = {});
 
   int vehicles() const { return static_cast<int>(states_.size()); }
   double step_s() const { return dt_s_; }
 
-  /// The driver does this; times of commands ascend.
+  /// Adds a command of the driver; times of commands ascend.
   void Command(const BrakeCommand& command);
-  /// The hose parts between vehicles `connection` and `connection` + 1, from 0. Again: nothing.
+  /// The hose parts between vehicles `connection` and `connection` + 1, from 0. A second call has no effect.
   void OpenPipe(double time_s, int connection);
   /// The valve of a vehicle is cut out, before the first step, with this pressure in its cylinder and none elsewhere.
   void TrapAir(int vehicle, double pressure_pa);
-  /// From one time to another the valve of a vehicle is held where it empties its cylinder; see ControlValve::BailOff.
+  /// Holds the valve of a vehicle, between two times, where it empties its cylinder; see ControlValve::BailOff.
   void BailOff(int vehicle, double from_s, double to_s) { bail_offs_.push_back({vehicle, from_s, to_s}); }
 
-  /// Pressure that acts in each vehicle's cylinder [Pa, gauge]; resizes. Times must ascend.
+  /// Acting pressure of each vehicle's cylinder [Pa, gauge]; resizes `pressure_pa`. Times must ascend.
   void PressuresAt(double time_s, std::vector<double>& pressure_pa);
 
   template <class Function>
