@@ -64,7 +64,7 @@ def run():
 
 
 def _beside_work():
-    """The same beside other work, which those who sleep leave its core and those who wait awake share it with."""
+    """The same beside other work: ranks that sleep leave it its core, ranks of MPI compete with it while they wait."""
     rows = []
     for ranks, exchanges in BUSY.items():
         settings = [f"duration_s={exchanges / 1000:g}"]

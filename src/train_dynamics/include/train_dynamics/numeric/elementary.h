@@ -4,17 +4,18 @@
 
 #include "train_dynamics/numeric/scalar.h"
 
-/// Exponential, arc tangent and inverse cube root, with one sequence of operations for
-/// `double` and for lanes: every machine, compiler and lane count gives the same bits, which no libm
-/// promises. Only + - * /, comparisons, Select and integer shifts and adds occur; there is no table.
-/// (Contraction into fused multiply-adds must be off: -ffp-contract=off.)
+/// Exponential, decay, arc tangent and inverse cube root, with one sequence of operations for `double` and for lanes:
+/// every machine, compiler and lane count gives the same bits, which no libm promises. Only + - * /, comparisons,
+/// Select and integer shifts and adds occur; there is no table. (Contraction into fused multiply-adds must be off:
+/// -ffp-contract=off.)
 ///
-/// Errors are relative, in ulp: the spacing of doubles at the exact result. The bounds hold in
+/// Errors, but that of Decay, are relative, in ulp: the spacing of doubles at the exact result. The bounds hold in
 /// test/elementary_test.cpp; in brackets the largest error found in some 10^7 arguments each. NaN in gives NaN
 /// out.
 ///
 /// The polynomial coefficients are minimax for the RELATIVE error of the function: Remez exchange in 60-digit
-/// arithmetic on the reduced interval, each coefficient then rounded to the nearest double.
+/// arithmetic on the reduced interval, each coefficient then rounded to the nearest double. Those of Decay come from an
+/// exchange in 50 digits that was stopped early: near minimax, not minimax.
 namespace train_dynamics {
 
 namespace detail {
