@@ -12,12 +12,12 @@ architecture=$(dpkg --print-architecture)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# What is not for users of the package: headers, static files of CMake, compiled Python.
+# What is not for users of the package: headers, archives, files of CMake, compiled Python.
 main=$work/train-brake rviz=$work/train-brake-rviz
 mkdir -p "$main" "$rviz" "$out"
 cp -a "$root/opt" "$main/"
 find "$main" -name __pycache__ -prune -exec rm -rf {} +
-rm -rf "$main$prefix/include" "$main$prefix/lib/pkgconfig" "$main$prefix"/share/*/cmake
+rm -rf "$main$prefix/include" "$main$prefix"/lib/*.a "$main$prefix/lib/pkgconfig" "$main$prefix"/share/*/cmake
 { grep -rlI "$root" "$main" || true; } | xargs -r sed -i "s:$root::g"   # paths of the folder that it was staged in
 (cd "$main$prefix" && find . \( -path './lib/*train_brake_rviz*' -o -path './share/train_brake_rviz*' \) \
   \( -type f -o -type l \) -print0) |

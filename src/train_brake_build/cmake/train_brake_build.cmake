@@ -2,8 +2,8 @@
 #
 #   train_brake_configure_target(target)              C++17, warnings, reproducible arithmetic, sanitizers
 #   train_brake_add_package_library(lib...)           the package's own library: src/*.cpp and include/, installed, with
-#   the
-#                                                     tests in test/ and the fuzz targets in fuzz/; uses lib...
+#                                                     the tests in test/ and the fuzz targets in fuzz/; uses lib...
+#   train_brake_add_archive(target)                   the library's objects once more, as the archive target_static
 #   train_brake_add_gtests(file... LIBRARIES lib...)  one GoogleTest executable per file
 #   train_brake_add_fuzz_targets(file... LIBRARIES lib...)  one fuzz target per file
 
@@ -93,6 +93,13 @@ function(train_brake_add_fuzz_targets)
       target_compile_definitions(${target} PRIVATE TRAIN_BRAKE_CORPUS="${PROJECT_SOURCE_DIR}/fuzz/corpus/${name}")
     endif()
   endforeach()
+endfunction()
+
+# The objects of a library once more as an archive, target_static, for programs that have it in themselves.
+function(train_brake_add_archive target)
+  add_library(${target}_static STATIC $<TARGET_OBJECTS:${target}>)
+  set_target_properties(${target}_static PROPERTIES LINKER_LANGUAGE CXX)
+  install(TARGETS ${target}_static ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
 endfunction()
 
 # After catkin_package(). A macro, because catkin's functions read variables of the package.

@@ -71,7 +71,7 @@ std::string Check(const char* name, const std::vector<double>& values, std::size
     if (std::isfinite(values[i])) continue;
     return std::string(name) + "[" + Text(i) + "] is " + std::to_string(values[i]) + ", must be finite";
   }
-  return "";
+  return {};
 }
 
 using Patches = std::vector<train_dynamics::FrictionPatchParams>;
@@ -99,7 +99,7 @@ std::string CheckPatches(const Patches& known, const std::vector<double>& number
     if (std::isfinite(from_m) && std::isfinite(to_m) && from_m < to_m && friction > 0.0 && friction <= 1.0) continue;
     return "friction_patches from [" + Text(at) + "] on is no patch of rail";
   }
-  return "";
+  return {};
 }
 
 }  // namespace
@@ -312,7 +312,7 @@ std::string WagonServer::WhyNot(const StepRequest& request) const {
     return "run " + Text(request.run_id) + " is not known here: this wagon node is in another run";
   }
   if (run.IsRepeated(request)) {
-    if (run.HasLastInputs(request)) return "";
+    if (run.HasLastInputs(request)) return {};
     return "exchange " + Text(request.exchange) + " has been computed already, with other loads";
   }
   if (request.exchange != run.next_exchange) {

@@ -18,7 +18,7 @@ using train_brake_msgs::ExchangeLayout;
 
 constexpr std::uint32_t kSpareSlots = 64;      // for replacements
 constexpr std::uint32_t kTextRoom = 1024;      // [bytes] for a fault or a refusal
-constexpr std::uint32_t kYields[2] = {1, 50};  // of the two ways of FasterWay
+constexpr std::uint32_t kYields[2] = {0, 50};  // of the two ways of FasterWay
 
 std::uint32_t RequestRoom(int vehicles) {
   train_brake_msgs::StepRequest request;
