@@ -10,6 +10,7 @@ import unittest
 
 import roslaunch.rlutil
 import rosunit
+import yaml
 
 LAUNCH = pathlib.Path(__file__).resolve().parent.parent / "launch"
 
@@ -82,6 +83,21 @@ class LaunchFiles(unittest.TestCase):
         )  # groups of an LTD train are 2D
         self.assertEqual(0, wagons(str(LAUNCH / "ore_line_emergency.launch"), "nodes:=4"))
         self.assertEqual(0, wagons(str(LAUNCH / "emergency.launch"), "nodes:=4", "on_nodes:=false"))
+        self.assertEqual(4, wagons(str(LAUNCH / "train.launch"), "nodes:=4"))
+        self.assertEqual(0, wagons(str(LAUNCH / "train.launch"), "nodes:=4", "model:=ltd"))
+
+    def test_the_model_is_that_of_the_scenario_unless_said(self):
+        def model(*arguments):
+            parameters = subprocess.run(
+                ["roslaunch", "--dump-params", str(LAUNCH / "train.launch"), *arguments],
+                stdout=subprocess.PIPE,
+                check=True,
+                text=True,
+            ).stdout
+            return yaml.safe_load(parameters).get("/train/master/model", "")
+
+        self.assertEqual("", model())
+        self.assertEqual("ltd", model("model:=ltd"))
 
     def test_words_that_are_not_understood_are_errors(self):
         """No is not taken for true, as a text that is not empty would be."""

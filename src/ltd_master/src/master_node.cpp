@@ -180,18 +180,24 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
 
 /// Logs the settings that this run does not use, and where its results go.
 void MasterNode::TellWhatIsNotUsed() const {
-  const bool is_2d = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
+  const bool is_2d = scenario_.params.Uses(train_dynamics::VehicleModel::kTwoD);
   if (is_2d && options_.vehicles == 0 && options_.ranks == 0) {
     const int vehicles = scenario_.consist.vehicles();
     ROS_WARN("all %d vehicles are in the master, on one core; vehicles:=%d puts them on wagon nodes", vehicles,
              vehicles);
+  }
+  if (!is_2d && options_.ranks > 0) {
+    ROS_WARN(
+        "no vehicle of this train is 2d: on %d wagon nodes it runs slower than in the master alone, which "
+        "on_nodes:=false gives",
+        options_.ranks);
   }
   if (!options_.nodes.empty() && options_.nodes != "auto" && options_.nodes != std::to_string(options_.ranks)) {
     ROS_WARN("nodes:=%s is not used: %s", Presentable(options_.nodes).c_str(),
              is_2d ? fmt::format("the train has {} vehicles and runs on {} wagon nodes", scenario_.consist.vehicles(),
                                  options_.ranks)
                          .c_str()
-                   : "trains of the LTD models run in the master alone");
+                   : "no vehicle of this train is 2d, and it runs in the master alone");
   }
   const LockstepDriverOptions& driver = options_.driver;
   const LockstepDriverOptions defaults;
