@@ -3,6 +3,7 @@
 import csv
 import functools
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -218,6 +219,24 @@ class Export(unittest.TestCase):
         self.assertIn("there is no such file", self.export("/nowhere", self.out, code=1))
         self.assertIn("could not be written", self.export(six_wagons(), "/dev/full/x", code=1))
         self.export(six_wagons(), code=2)
+
+    def test_a_full_output_is_an_error(self):
+        for words in (["export", str(six_wagons()), "--list"], ["sweep", "--help"], ["report", "--help"]):
+            for unbuffered in ("", "1"):
+                with self.subTest(words=words, unbuffered=unbuffered), open("/dev/full", "w") as full:
+                    done = subprocess.run(
+                        ["rosrun", "train_brake", *words],
+                        stdout=full,
+                        stderr=subprocess.PIPE,
+                        text=True,
+                        check=False,
+                        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+                    )
+                    self.assertRegex(
+                        done.stderr,
+                        rf"^{words[0]}: the \w+ could not be written: (\[Errno 28\] )?No space left on device\n$",
+                    )
+                    self.assertEqual(1, done.returncode)
 
     def test_hdf5_without_h5py_names_the_package(self):
         with mock.patch.dict("sys.modules", {"h5py": None}), self.assertRaisesRegex(

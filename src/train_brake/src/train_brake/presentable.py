@@ -1,9 +1,11 @@
-"""Text of unknown origin (names, paths, what programs report), as it may be shown on a terminal and on a page."""
+"""Text of unknown origin (names, paths, what programs report), as it may be shown on a terminal and on a page; what
+becomes of the output when a command ends."""
 
 import contextlib
 import os
 import sys
 import unicodedata
+from typing import Callable, List, NoReturn
 
 TURNS_WRITING = {*range(0x202A, 0x202F), *range(0x2066, 0x206A)}  # to the left, to the right
 
@@ -33,3 +35,27 @@ def tell(line: str) -> None:
     except OSError:
         with contextlib.suppress(OSError):  # closed
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def exit_with(name: str, main: Callable[[List[str]], int]) -> NoReturn:
+    """Runs the command and ends the program with its exit code: 1 in place of 0 if what it printed could not be written
+    (a full disk, a closed pipe). Python itself finds that after it has decided on the code, and ends with 120.
+    """
+    code = 1
+    try:
+        try:
+            code = main(sys.argv[1:])
+        except SystemExit as end:  # of --help and wrong arguments
+            code = end.code
+        if sys.stdout is not None:  # closed
+            sys.stdout.flush()
+    except OSError as error:
+        if error.filename is not None:  # of a file, which the command should have told
+            raise
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        with contextlib.suppress(OSError):
+            if not isinstance(error, BrokenPipeError):  # nobody reads on
+                print(f"{name}: the output could not be written: {error.strerror}", file=sys.stderr, flush=True)
+        code = code or 1
+    sys.exit(code)
