@@ -7,6 +7,8 @@ import workspace
 from runs import PAPER_WALL_S
 from table import Table, number, times
 
+EVERY_VEHICLE_S = 30  # simulated
+
 
 def run():
     cores = machine.cores()
@@ -18,7 +20,9 @@ def run():
         )
     if {run.summary["state_digest"] for run in alone} != {launch.summary["state_digest"] for launch in ranks}:
         raise measure.Failed("the ROS graph and the train in one process have different digests")
-    every = workspace.Launch(workspace.VEHICLES, record=True, settings=["exchange_interval_s=0.005"])
+    every = workspace.Launch(
+        workspace.VEHICLES, record=True, settings=["exchange_interval_s=0.005", f"duration_s={EVERY_VEHICLE_S}"]
+    )
 
     alone_s, ranks_s = (measure.median([workspace.per_exchange_s(r.summary) for r in runs]) for runs in (alone, ranks))
     wall_s = measure.median([launch.wall_s for launch in ranks])
@@ -45,11 +49,13 @@ def run():
             "5 ms",
             number(1e3 * every.per_exchange_s()),
             number(every.wall_s),
-            times(PAPER_WALL_S / every.wall_s),
+            "-",
         ),
     ]
     table = Table(
-        "emergency stop with its bag, 70 s", ["", "interval", "exchange [ms]", "run [s]", "to the paper"], rows
+        f"emergency stop with its bag, 70 s (with a rank per vehicle: its first {EVERY_VEHICLE_S} s)",
+        ["", "interval", "exchange [ms]", "run [s]", "to the paper"],
+        rows,
     )
     overhead_s = measure.median(
         [workspace.per_exchange_s(r.summary) - workspace.per_exchange_s(a.summary) for a, r in zip(alone, ranks)]
@@ -57,6 +63,6 @@ def run():
     return [table], {
         "overhead_ms": 1e3 * overhead_s,
         "ranks_wall_s": wall_s,
-        "every_vehicle_wall_s": every.wall_s,
+        "every_vehicle_to_real": every.wall_s / EVERY_VEHICLE_S,
         "every_vehicle_ms": 1e3 * every.per_exchange_s(),
     }

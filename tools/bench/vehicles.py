@@ -16,6 +16,7 @@ def run():
     step, creep_shares = _parts(parts, operations)
     tables = [_by_instruction_set(vehicles), _exchanges(train), _beside(train), ltd, _recording(per_record), step]
     return tables, {
+        "alone_ns": min(_ns(vehicles, name) for name in vehicles if name.startswith("wagon/")),
         "locked_ns": _ns(train, "exchange_locked/2d/1"),
         "bag_us": 1e6 * per_record["bag"]["cpu_time"],
         "pneumatic_share": pneumatic_ns / _ns(train, "exchange/2d/1"),
