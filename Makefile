@@ -209,10 +209,14 @@ tidy: build ## static analysis (clang-tidy 14)
 	@run-clang-tidy -quiet -extra-arg=-Qunused-arguments -p build '^$(CURDIR)/src/' 2>&1 | sed -uE '/clang-tidy-|warnings? generated\.$$|^Suppressed |^Use -header-filter/d'
 
 SINCE ?= HEAD~1
+# The sources that changed since then, or, where the history is not there (a shallow clone), those of one small library.
+tidy_short = $(shell git rev-parse -q --verify '$(SINCE)^{commit}' >/dev/null \
+  && git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' || git ls-files 'src/strict_config/src/*.cpp')
 .PHONY: tidy-short
 tidy-short: build ## ... of the sources (without tests) that changed since the commit SINCE=HEAD~1
 	@tools/install_packages.sh packages_tidy.txt
-	@git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' | xargs -r -n 1 clang-tidy --quiet --extra-arg=-Qunused-arguments -p build
+	@echo 'clang-tidy:' $(tidy_short)
+	@echo $(tidy_short) | xargs -r -n 1 -P $(JOBS) clang-tidy --quiet --extra-arg=-Qunused-arguments -p build
 
 .PHONY: clean
 clean: ## remove everything built; results stay
