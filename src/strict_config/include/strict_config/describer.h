@@ -43,8 +43,8 @@ struct KeyDescription {
   std::vector<KeyDescription> keys;     ///< of a group or part, or of each entry of a list of them
 
   std::vector<KeyCondition> known_with;  ///< all must hold; none: always
-  std::vector<KeyCondition>
-      required_with;  ///< it must be given where all hold; none: where it is known, always or never
+  /// It must be given where all hold; none: where it is known, always or never.
+  std::vector<KeyCondition> required_with;
 
   bool IsSame(const KeyDescription& other) const { return key == other.key && type == other.type; }
   bool IsMap() const { return kind == Kind::kGroup || kind == Kind::kPart; }

@@ -128,8 +128,8 @@ class Track {
   StepFunction grades_, curvatures_, speed_limits_;
   std::vector<DipParams> dips_;
   Pieces dip_pieces_;
-  std::vector<int>
-      dips_before_;  ///< [piece] the number of entries of dips_by_piece_ before its own; one more at the end
+  /// [piece] the number of entries of dips_by_piece_ before its own; one more at the end.
+  std::vector<int> dips_before_;
   std::vector<int> dips_by_piece_;  ///< indices of the dips that touch a piece, ascending
   std::vector<FrictionPatchParams> patches_;
   Pieces surface_pieces_;

@@ -57,9 +57,9 @@ struct PipeFlow {
   PipeFlow(const PipeGrid& grid, double pressure_pa);
 
   std::vector<double> pressure_pa;  ///< [cell], absolute
-  std::vector<double>
-      mass_flow_kgps;        ///< [face 0 ... cells], towards the rear; at the two ends set by the caller, initially 0
-  std::vector<double> open;  ///< [face 0 ... cells], 1 or 0: an angle cock closed, a hose parted
+  /// [face 0 ... cells], towards the rear; at the two ends set by the caller, initially 0.
+  std::vector<double> mass_flow_kgps;
+  std::vector<double> open;           ///< [face 0 ... cells], 1 or 0: an angle cock closed, a hose parted
   std::vector<double> momentum_flux;  ///< [cell], M^2/(rho A) [N]: of the step, no state
 };
 
