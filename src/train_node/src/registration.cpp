@@ -45,12 +45,13 @@ std::vector<std::pair<std::string, std::string>> OwnTopics(const char* method) {
   XmlRpcValue topics = CallSelf(method, request);
   std::vector<std::pair<std::string, std::string>> found;
   if (topics.getType() != XmlRpcValue::TypeArray) return found;
+  // NOLINTNEXTLINE(modernize-loop-convert): its iterators are those of a map
   for (int i = 0; i < topics.size(); ++i) found.emplace_back(topics[i][0], topics[i][1]);
   return found;
 }
 
 void Register(const std::map<std::string, std::string>& services) {
-  const std::string node = ros::this_node::getName();
+  const std::string& node = ros::this_node::getName();
   const std::string api = ros::XMLRPCManager::instance()->getServerURI();
   const std::string server =
       "rosrpc://" + ros::network::getHost() + ":" + std::to_string(ros::ConnectionManager::instance()->getTCPPort());

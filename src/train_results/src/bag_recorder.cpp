@@ -48,8 +48,8 @@ Bytes BagRecorder::Checkpoint() {
   for (const int topic : {state_topic_, forces_topic_, pressures_topic_, ledger_topic_}) {
     writer.Add(static_cast<std::uint64_t>(topic));
   }
-  writer.Add(static_cast<std::uint64_t>(slides_topic_ + 1));
-  writer.Add(static_cast<std::uint64_t>(given_topic_ + 1));
+  writer.Add(static_cast<std::uint64_t>(slides_topic_) + 1);
+  writer.Add(static_cast<std::uint64_t>(given_topic_) + 1);
   writer.Add(std::uint64_t{wagon_topic_.size()});
   for (const auto& [vehicle, topic] : wagon_topic_) {
     writer.Add(static_cast<std::uint64_t>(vehicle));

@@ -181,7 +181,8 @@ class Comparison {
 
   template <class T>
   void Judge(const std::string& quantity, T recorded, T repeated, const Owners& owners, std::size_t i) {
-    if (std::memcmp(&recorded, &repeated, sizeof recorded) == 0) return;  // bit by bit: 0.0 is not -0.0
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bit by bit, 0.0 is not -0.0
+    if (std::memcmp(&recorded, &repeated, sizeof recorded) == 0) return;
     if constexpr (std::is_floating_point_v<T>) {
       if (std::isnan(recorded) && std::isnan(repeated)) return;  // whose other bits no rule fixes
     }

@@ -33,6 +33,7 @@ LoadedScenario LoadWithPneumaticBrake(const std::string& file, const std::vector
 
 std::vector<double> Lengths(const Consist& consist) {
   std::vector<double> length_m;
+  length_m.reserve(consist.vehicles());
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   return length_m;
 }

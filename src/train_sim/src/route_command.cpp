@@ -18,7 +18,6 @@ namespace train_sim {
 namespace {
 
 using train_dynamics::StationParams;
-using train_dynamics::StepFunction;
 using train_dynamics::StepValue;
 using train_dynamics::Stretch;
 using train_dynamics::Track;

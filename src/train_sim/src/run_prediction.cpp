@@ -24,9 +24,10 @@ using train_dynamics::config::LoadedScenario;
 
 /// Number of records and of energy ledgers in a run, the start's and the end's included.
 struct Counts {
-  explicit Counts(const ScenarioParams& p)
-      : records(1.0 + static_cast<double>(p.Exchanges() / p.ExchangesPerRecord())) {
-    ledgers = std::ceil((records - 1.0) / p.RecordsPerLedger()) + 1.0;
+  explicit Counts(const ScenarioParams& p) {
+    const auto after_start = p.Exchanges() / p.ExchangesPerRecord();  // whole ones
+    records = 1.0 + static_cast<double>(after_start);
+    ledgers = std::ceil(static_cast<double>(after_start) / p.RecordsPerLedger()) + 1.0;
   }
   double records, ledgers;
 };

@@ -178,7 +178,7 @@ DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemPar
       train.dynamic_brakes.push_back(i + 1);
   }
   train.graduated_release = brake.ReleasesGradually();
-  constexpr double kSettle_s = 120.0;
+  constexpr double kSettleSeconds = 120.0;
   const auto force_of = [&](const std::vector<double>& pressure_pa, double speed_mps) {
     double force_n = 0.0;
     for (int i = 0; i < consist.vehicles(); ++i)
@@ -189,10 +189,10 @@ DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemPar
   for (const bool is_first : {true, false}) {
     const double reduction_kpa = is_first ? p.first_reduction_kpa : p.largest_reduction_kpa;
     std::vector<BrakeCommand> commands = {{0.0, BrakeCommandKind::kApply, reduction_kpa}};
-    if (is_first) commands.push_back({kSettle_s, BrakeCommandKind::kRelease, 0.0});
+    if (is_first) commands.push_back({kSettleSeconds, BrakeCommandKind::kRelease, 0.0});
     BrakeSystem system(brake, commands, consist.centre_m, PressureGrid{0.5, 2}, length_m);
     std::vector<double> pressure_pa, force_n;
-    for (int second = 0; second <= static_cast<int>(kSettle_s); ++second) {
+    for (int second = 0; second <= static_cast<int>(kSettleSeconds); ++second) {
       system.PressuresAt(second, pressure_pa);
       force_n.push_back(force_of(pressure_pa, 10.0));
     }
@@ -202,12 +202,12 @@ DriversTrain MakeDriversTrain(const BuiltInDriverParams& p, const BrakeSystemPar
     const double all_n = std::max(1.0, force_n.back());
     for (int second = 0; second <= kShareSeconds; ++second)
       train.application_share.push_back(second == kShareSeconds ? 1.0 : force_n[second] / all_n);
-    int second = static_cast<int>(kSettle_s);
-    for (; second < static_cast<int>(kSettle_s) + 120 && force_n.back() > 0.37 * all_n; ++second) {
+    int second = static_cast<int>(kSettleSeconds);
+    for (; second < static_cast<int>(kSettleSeconds) + 120 && force_n.back() > 0.37 * all_n; ++second) {
       system.PressuresAt(second + 1, pressure_pa);
       force_n.push_back(force_of(pressure_pa, 10.0));
     }
-    train.release_time_s = std::max(1.0, second - kSettle_s);
+    train.release_time_s = std::max(1.0, second - kSettleSeconds);
   }
   return train;
 }
@@ -231,14 +231,14 @@ SpeedGoal GoalAt(const BuiltInDriverParams& p, const DriverView& view, const std
 
 double StoppingDistance(const BuiltInDriverParams& p, const DriversTrain& train, double reduction_kpa,
                         double resistance_mps2, const DriverView& view, double air_n) {
-  constexpr double kStep_s = 0.25;
+  constexpr double kStepSeconds = 0.25;
   double v = std::max(0.0, view.speed_mps), way_m = 0.0;
-  for (double t = 0.0; v > 0.0 && t < 600.0; t += kStep_s) {
-    const double share = train.ApplicationShare(t + 0.5 * kStep_s);
+  for (double t = 0.0; v > 0.0 && t < 600.0; t += kStepSeconds) {
+    const double share = train.ApplicationShare(t + 0.5 * kStepSeconds);
     const double now_n = std::max(air_n, share * train.BrakeForce(p, reduction_kpa, v));
     const double force_n = now_n + train.mass_kg * (kGravity * view.mean_grade + resistance_mps2);
-    const double next = std::max(0.0, v - kStep_s * force_n / train.moving_mass_kg);
-    way_m += 0.5 * kStep_s * (v + next);
+    const double next = std::max(0.0, v - kStepSeconds * force_n / train.moving_mass_kg);
+    way_m += 0.5 * kStepSeconds * (v + next);
     v = next;
   }
   return way_m;
@@ -295,8 +295,8 @@ std::vector<DriverCommand> Drive(const BuiltInDriverParams& p, const DriversTrai
       return hands.commands;
     }
   }
-  constexpr double kLead_s = 15.0;
-  const SpeedGoal goal = GoalAt(p, view, stop_m, kLead_s);
+  constexpr double kLeadSeconds = 15.0;
+  const SpeedGoal goal = GoalAt(p, view, stop_m, kLeadSeconds);
   const double missing_mps = goal.speed_mps - v;
   // The planned deceleration applies near the goal speed: a slow train need not brake yet.
   const double planned_mps2 = goal.acceleration_mps2 * std::clamp(2.0 * v / goal.speed_mps - 1.0, 0.0, 1.0);

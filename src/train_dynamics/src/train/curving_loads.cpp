@@ -12,6 +12,7 @@ CurvingLoads::CurvingLoads(const TrackParams& track, const Consist& consist, dou
   const std::vector<StepValue> curvatures = track.Curvatures();
   if (curvatures.empty()) return;
   std::vector<double> cuts;
+  cuts.reserve(curvatures.size());
   for (const StepValue& step : curvatures) cuts.push_back(step.from_m);
   pieces_ = Pieces(cuts);
   for (const VehicleParams& vehicle : consist.vehicle_types) {

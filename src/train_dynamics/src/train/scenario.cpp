@@ -335,6 +335,7 @@ void ScenarioParams::JudgeSlideProtection(std::vector<BrokenRule>& broken) const
 
 BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consist) {
   std::vector<double> length_m;
+  length_m.reserve(consist.vehicles());
   for (int i = 0; i < consist.vehicles(); ++i) length_m.push_back(consist.vehicle(i).length_m);
   const PressureGrid grid{scenario.exchange_interval_s, scenario.ExchangesPerRecord()};
   const auto brake_with = [&](const std::vector<BrakeCommand>& commands) {
@@ -350,10 +351,10 @@ BrakeSystem MakeBrakeSystem(const ScenarioParams& scenario, const Consist& consi
   BrakeSystem brake =
       is_applied ? brake_with({{0.0, BrakeCommandKind::kApply, scenario.initial_reduction_kpa}}) : brake_with(timed);
   if (is_applied) {
-    constexpr double kSettle_s = 120.0;
+    constexpr double kSettleSeconds = 120.0;
     std::vector<double> pressure_pa;
-    brake.PressuresAt(kSettle_s, pressure_pa);
-    brake.MoveAhead(kSettle_s);
+    brake.PressuresAt(kSettleSeconds, pressure_pa);
+    brake.MoveAhead(kSettleSeconds);
     for (const BrakeCommand& command : timed) brake.Command(command);
   }
   std::vector<LocomotiveBrakes::Locomotive> locomotives;

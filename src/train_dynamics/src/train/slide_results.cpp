@@ -120,6 +120,7 @@ std::vector<WheelsetSlides> SlideResults::Wheelsets() const {
     of.largest_adhesion = std::max(of.largest_adhesion, event.largest_adhesion);
   }
   std::vector<WheelsetSlides> list;
+  list.reserve(wheelsets.size());
   for (const auto& [key, of] : wheelsets) list.push_back(of);
   return list;
 }

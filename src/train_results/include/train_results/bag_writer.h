@@ -83,10 +83,12 @@ class BagWriter {
   /// Does not initialise new bytes, which are written at once.
   template <class T>
   struct Uninitialised : std::allocator<T> {
+    // NOLINTBEGIN(readability-identifier-naming): what the standard calls them
     template <class U>
     struct rebind {
       using other = Uninitialised<U>;
     };
+    // NOLINTEND(readability-identifier-naming)
     template <class U>
     void construct(U* place) {
       ::new (static_cast<void*>(place)) U;

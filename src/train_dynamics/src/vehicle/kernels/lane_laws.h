@@ -62,11 +62,7 @@ VehicleLoads<T> LoadsAt(const LoadPlaces& places, int first) {
   loads.rear_coupler_n = Load<T>(places.rear_coupler_n + first);
   ForEachLoad(
       [first](const LoadInfo& load, const double* place, T& value) {
-        if (load.given == Given::kAlways) {
-          value = Load<T>(place + first);
-        } else if (with_rare && place != nullptr) {
-          value = Load<T>(place + first);
-        }
+        if (load.given == Given::kAlways || (with_rare && place != nullptr)) value = Load<T>(place + first);
       },
       places, loads);
   return loads;
