@@ -215,7 +215,7 @@ SINCE ?= HEAD~1
 tidy_short = $(shell git rev-parse -q --verify '$(SINCE)^{commit}' >/dev/null \
   && git diff --name-only --diff-filter=ACMR $(SINCE) -- 'src/*/src/*.cpp' || git ls-files 'src/strict_config/src/*.cpp')
 .PHONY: tidy-short
-tidy-short: build ## ... of the sources (without tests) that changed since the commit SINCE=HEAD~1
+tidy-short: deps-rviz build ## ... of the sources (without tests) that changed since the commit SINCE=HEAD~1
 	@tools/install_packages.sh packages_tidy.txt
 	@echo 'clang-tidy:' $(tidy_short)
 	@echo $(tidy_short) | xargs -r -n 1 -P $(JOBS) clang-tidy --quiet $(addprefix --extra-arg=,$(tidy_arguments)) -p build

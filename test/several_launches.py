@@ -269,8 +269,14 @@ class SeveralLaunches(LaunchTest):
     def test_nodes_that_are_not_used_are_told(self):
         launch = self.launch("run", "model:=ltd", "nodes:=4", "on_lost_driver:=hold")
         self.assertEqual(0, launch.ended(), launch.log())
-        self.assertIn("nodes:=4 is not used", launch.log())
+        self.assertIn("nodes:=4 is not used: all vehicles are in the master", launch.log())
         self.assertRegex(launch.log(), "on_lost_driver, .* are not used: there is no driver")
+
+    def test_the_model_of_the_scenario_is_taken_and_needless_nodes_are_told(self):
+        launch = self.launch("ltd", "set:=model=ltd", "nodes:=9")
+        self.assertEqual(0, launch.ended(), launch.log())
+        self.assertIn("no vehicle of this train is 2d: on 6 wagon nodes it runs slower", launch.log())
+        self.assertIn("nodes:=9 is not used: the train has 6 vehicles and runs on 6 wagon nodes", launch.log())
 
     def test_paths_are_those_of_the_caller(self):
         caller, home = self.folder / "caller", self.folder / "home"

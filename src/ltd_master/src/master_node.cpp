@@ -180,13 +180,13 @@ MasterNode::MasterNode(const MasterOptions& options, ros::NodeHandle node, ros::
 
 /// Logs the settings that this run does not use, and where its results go.
 void MasterNode::TellWhatIsNotUsed() const {
-  const bool is_2d = scenario_.params.Uses(train_dynamics::VehicleModel::kTwoD);
+  const int vehicles = scenario_.consist.vehicles();
+  const bool is_2d = scenario_.params.model == train_dynamics::VehicleModel::kTwoD;
   if (is_2d && options_.vehicles == 0 && options_.ranks == 0) {
-    const int vehicles = scenario_.consist.vehicles();
     ROS_WARN("all %d vehicles are in the master, on one core; vehicles:=%d puts them on wagon nodes", vehicles,
              vehicles);
   }
-  if (!is_2d && options_.ranks > 0) {
+  if (options_.ranks > 0 && !scenario_.params.Uses(train_dynamics::VehicleModel::kTwoD)) {
     ROS_WARN(
         "no vehicle of this train is 2d: on %d wagon nodes it runs slower than in the master alone, which "
         "on_nodes:=false gives",
@@ -194,10 +194,9 @@ void MasterNode::TellWhatIsNotUsed() const {
   }
   if (!options_.nodes.empty() && options_.nodes != "auto" && options_.nodes != std::to_string(options_.ranks)) {
     ROS_WARN("nodes:=%s is not used: %s", Presentable(options_.nodes).c_str(),
-             is_2d ? fmt::format("the train has {} vehicles and runs on {} wagon nodes", scenario_.consist.vehicles(),
-                                 options_.ranks)
-                         .c_str()
-                   : "no vehicle of this train is 2d, and it runs in the master alone");
+             options_.ranks > 0
+                 ? fmt::format("the train has {} vehicles and runs on {} wagon nodes", vehicles, options_.ranks).c_str()
+                 : "all vehicles are in the master");
   }
   const LockstepDriverOptions& driver = options_.driver;
   const LockstepDriverOptions defaults;

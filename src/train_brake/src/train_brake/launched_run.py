@@ -192,7 +192,7 @@ def run(words):
     if told is None:
         return 2
     arguments.setdefault("vehicles", told["vehicles"])
-    # The launch file's defaults are 2d and one wagon node per core: a train without 2D vehicles needs none.
+    # The launch file cannot read the scenario: unless told, it starts wagon nodes, which only 2D vehicles need.
     if "model" not in arguments:
         arguments["model"] = told["default_model"]
         arguments.setdefault("on_nodes", str("2d" in told["model"].split(", ")).lower())

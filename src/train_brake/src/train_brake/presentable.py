@@ -38,20 +38,17 @@ def tell(line: str) -> None:
 
 
 def exit_with(name: str, main: Callable[[List[str]], int]) -> NoReturn:
-    """Runs the command and ends the program with its exit code: 1 in place of 0 if what it printed could not be written
-    (a full disk, a closed pipe). Python itself finds that after it has decided on the code, and ends with 120.
+    """Runs the command and ends the program with its exit code: 1 in place of 0 if what it printed last could not be
+    written (a full disk, a closed pipe). Python itself finds that after it has decided on the code, and ends with 120.
     """
-    code = 1
     try:
-        try:
-            code = main(sys.argv[1:])
-        except SystemExit as end:  # of --help and wrong arguments
-            code = end.code
+        code = main(sys.argv[1:])
+    except SystemExit as end:  # of --help and wrong arguments
+        code = end.code
+    try:
         if sys.stdout is not None:  # closed
             sys.stdout.flush()
     except OSError as error:
-        if error.filename is not None:  # of a file, which the command should have told
-            raise
         with contextlib.suppress(OSError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         with contextlib.suppress(OSError):
