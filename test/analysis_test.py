@@ -236,53 +236,6 @@ class Export(unittest.TestCase):
                     (done.returncode, done.stderr),
                 )
 
-    def test_hdf5_has_units_and_the_configuration(self):
-        import h5py  # pylint: disable=import-outside-toplevel
-
-        self.export(six_wagons(), self.out / "run.h5")
-        run = train_brake.load(six_wagons())
-        with h5py.File(self.out / "run.h5") as file:
-            for topic in run:
-                for field in run[topic].fields:
-                    stored = file[topic][field]
-                    data = stored.asstr()[()] if run[topic][field].dtype.kind == "U" else stored[()]
-                    numpy.testing.assert_array_equal(run[topic][field], data)
-                    self.assertEqual(
-                        (run[topic].unit(field), run[topic].meaning(field)),
-                        (stored.attrs["unit"], stored.attrs["meaning"]),
-                    )
-            self.assertEqual(run.config, json.loads(file.attrs["config"]))
-
-    def test_chosen_topics_and_the_list(self):
-        self.export(six_wagons(), self.out, "--topics", "state")
-        self.assertEqual(["state.csv"], [file.name for file in self.out.iterdir()])
-        listed = self.export(six_wagons(), "--list")
-        self.assertRegex(listed, r"speed_mps \[m/s\] 6  \[n\] forward positive")
-
-    def test_errors(self):
-        self.assertIn("has no topic stat: it has", self.export(six_wagons(), self.out, "--topics", "stat", code=1))
-        self.assertIn("there is no such file", self.export("/nowhere", self.out, code=1))
-        self.assertIn("could not be written", self.export(six_wagons(), "/dev/full/x", code=1))
-        self.export(six_wagons(), code=2)
-
-    def test_a_full_output_is_an_error(self):
-        for words in (["export", str(six_wagons()), "--list"], ["sweep", "--help"], ["report", "--help"]):
-            for unbuffered in ("", "1"):
-                with self.subTest(words=words, unbuffered=unbuffered), open("/dev/full", "w") as full:
-                    done = subprocess.run(
-                        ["rosrun", "train_brake", *words],
-                        stdout=full,
-                        stderr=subprocess.PIPE,
-                        text=True,
-                        check=False,
-                        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
-                    )
-                    self.assertRegex(
-                        done.stderr,
-                        rf"^{words[0]}: the \w+ could not be written: (\[Errno 28\] )?No space left on device\n$",
-                    )
-                    self.assertEqual(1, done.returncode)
-
     def test_hdf5_without_h5py_names_the_package(self):
         with mock.patch.dict("sys.modules", {"h5py": None}), self.assertRaisesRegex(
             train_brake.BagError, "python3-h5py"

@@ -30,8 +30,8 @@ TARGETS = [
     ("ROS, 242 ranks, interval 5 ms: wall time to simulated", "graph", "every_vehicle_to_real", 1.0, "x"),
     ("cost per vehicle from 50 to 2000 vehicles, 2D", "scaling", "2d_spread", 15, "%"),
     ("cost per vehicle from 50 to 2000 vehicles, LTD", "scaling", "ltd_spread", 15, "%"),
-    # Limits of 5, 30, 30, 40, 10, 15, 10 and 60 ns to the 96 ns of a 2D vehicle-step where they were set, and of 3, 10 and
-    # 60 ns to the 6.8 ns of an LTD one.
+    # Limits of 5, 30, 30, 40, 10, 15, 10 and 60 ns to the 96 ns of a 2D vehicle-step where they were set, and of 3,
+    # 10 and 60 ns to the 6.8 ns of an LTD one.
     ("2D with three grades", "features", "grades", 1.05, "x"),
     ("2D with three patches of friction", "features", "patches", 1.31, "x"),
     ("2D with a dip", "features", "dips", 1.31, "x"),
@@ -70,7 +70,7 @@ transformations between bodies and elements most of the rest ([table](#one-vehic
 {runs.2d_1_recording_cpu %} of CPU time on one thread, {runs.2d_{cores}_recording %} of wall time on all cores."""
 SLOWER = """the limit is of a machine with AVX-512; this one steps {scaling.lanes} wagons side by side, in
 {vehicles.alone_ns} ns each ([table](#one-vehicle)), and its instructions alone take {limit.issue_share %} of the time
-([below](#how-far-from-the-machines-limit)): the rest is waiting, most of it for divisions and for what shares the core."""
+([below](#how-far-from-the-machines-limit)): the rest is waiting, for divisions and for what shares the core."""
 REASONS = {
     "minutes": """most of it are the launches of up to 242 processes, which take longer to start and to end
 than to run ([table](#ranks-and-mpi)).""",

@@ -129,7 +129,7 @@ void WagonNode::ServeSlot() {
     lock.lock();
     return is_there && slot == slot_;  // the node may have been configured once more
   };
-  // Where many ranks share a core, each exchange finds what it touches in no cache. So it asks roscpp now and then only.
+  // Where many ranks share a core, each exchange finds what it touches in no cache: it asks roscpp now and then only.
   constexpr unsigned kExchangesPerQuestion = 4;
   unsigned served = 0;
   for (; is_called() && (served % kExchangesPerQuestion != 0 || ros::ok()); ++served) {
